@@ -1,0 +1,171 @@
+"""Vectors and matrices as tuples of scalars of any backend, with structural zeros and ones.
+
+The Python integers 0, 1 and -1 are structure, never numbers: a product with 0 is dropped, a product with 1
+costs nothing. So the zero and identity blocks of a Jacobian never reach the generated code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+
+from .base import Scalar
+
+Vector = tuple[Scalar, ...]
+Matrix = tuple[tuple[Scalar, ...], ...]
+#: A matrix as a product of sparse factors, leftmost first; whoever multiplies chooses the order.
+Chain = tuple[Matrix, ...]
+
+
+def is_structural(a: Scalar) -> bool:
+    """Whether ``a`` is a structural integer."""
+    return type(a) is int
+
+
+def neg(a: Scalar) -> Scalar:
+    """Return -a."""
+    return -a
+
+
+def times(a: Scalar, b: Scalar) -> Scalar:
+    """Return a b; structural factors cost nothing."""
+    for s, other in ((a, b), (b, a)):
+        if type(s) is int and s in (0, 1, -1):
+            return 0 if s == 0 else other if s == 1 else -other
+    return a * b
+
+
+def plus(a: Scalar, b: Scalar) -> Scalar:
+    """Return a + b; a structural zero costs nothing."""
+    if type(a) is int and a == 0:
+        return b
+    if type(b) is int and b == 0:
+        return a
+    return a + b
+
+
+def total(terms: Sequence[Scalar]) -> Scalar:
+    """Sum from left to right."""
+    return reduce(plus, terms, 0)
+
+
+def add(a: Sequence[Scalar], b: Sequence[Scalar]) -> Vector:
+    """Return a + b."""
+    return tuple(plus(x, y) for x, y in zip(a, b, strict=True))
+
+
+def sub(a: Sequence[Scalar], b: Sequence[Scalar]) -> Vector:
+    """Return a - b."""
+    return tuple(x - y for x, y in zip(a, b, strict=True))
+
+
+def scale(k: Scalar, v: Sequence[Scalar]) -> Vector:
+    """Return k v."""
+    return tuple(times(k, x) for x in v)
+
+
+def negate(v: Sequence[Scalar]) -> Vector:
+    """Return -v."""
+    return tuple(-x for x in v)
+
+
+def dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    """Return a . b."""
+    return total([times(x, y) for x, y in zip(a, b, strict=True)])
+
+
+def cross(a: Sequence[Scalar], b: Sequence[Scalar]) -> Vector:
+    """Return a x b of two 3-vectors."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+def eye(n: int) -> Matrix:
+    """Identity, as structure."""
+    return tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+
+
+def zeros(rows: int, columns: int) -> Matrix:
+    """Zero, as structure."""
+    return ((0,) * columns,) * rows
+
+
+def diagonal(v: Sequence[Scalar]) -> Matrix:
+    """Diagonal matrix."""
+    return tuple(tuple(x if i == j else 0 for j in range(len(v))) for i, x in enumerate(v))
+
+
+def column(v: Sequence[Scalar]) -> Matrix:
+    """One column."""
+    return tuple((x,) for x in v)
+
+
+def skew(v: Sequence[Scalar]) -> Matrix:
+    """The matrix [v]x with [v]x w = v x w."""
+    x, y, z = v
+    return ((0, -z, y), (z, 0, -x), (-y, x, 0))
+
+
+def transpose(a: Matrix) -> Matrix:
+    """Return the transpose."""
+    return tuple(zip(*a, strict=True))
+
+
+def matvec(a: Matrix, v: Sequence[Scalar]) -> Vector:
+    """Return A v."""
+    return tuple(dot(row, v) for row in a)
+
+
+def matmul(a: Matrix, b: Matrix) -> Matrix:
+    """Return A B."""
+    columns = transpose(b)
+    return tuple(tuple(dot(row, c) for c in columns) for row in a)
+
+
+def elementwise(f: Callable[[Scalar, Scalar], Scalar], a: Matrix, b: Matrix) -> Matrix:
+    """Apply ``f`` entry by entry."""
+    return tuple(tuple(f(x, y) for x, y in zip(r, s, strict=True)) for r, s in zip(a, b, strict=True))
+
+
+def matadd(a: Matrix, b: Matrix) -> Matrix:
+    """Return A + B."""
+    return elementwise(plus, a, b)
+
+
+def matscale(k: Scalar, a: Matrix) -> Matrix:
+    """Return k A."""
+    return tuple(scale(k, row) for row in a)
+
+
+def beside(*blocks: Matrix) -> Matrix:
+    """Blocks in a row: [A B ...]."""
+    return tuple(tuple(x for row in rows for x in row) for rows in zip(*blocks, strict=True))
+
+
+def stacked(*blocks: Matrix) -> Matrix:
+    """Blocks in a column."""
+    return tuple(row for block in blocks for row in block)
+
+
+def multiply_cost(a: Matrix, b: Matrix) -> int:
+    """Number of scalar products in A B that structure does not make free."""
+    heavy_a = [[int(not is_structural(x)) for x in row] for row in a]
+    columns = transpose(b)
+    return sum(
+        sum(h for h, y in zip(row, c, strict=True) if not is_structural(y))
+        for row in heavy_a
+        for c in columns
+    )
+
+
+def product(chain: Chain) -> Matrix:
+    """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
+    factors = list(chain)
+    while len(factors) > 1:
+        costs = [multiply_cost(factors[k], factors[k + 1]) for k in range(len(factors) - 1)]
+        k = costs.index(min(costs))
+        factors[k : k + 2] = [matmul(factors[k], factors[k + 1])]
+    return factors[0]

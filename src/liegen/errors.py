@@ -1,0 +1,40 @@
+"""Every error a user can cause. Each message names the factor, the argument and the cure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Site:
+    """A line of the user's file."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}"
+
+
+class LiegenError(Exception):
+    """Base of all errors that liegen raises for wrong input."""
+
+
+class DefinitionError(LiegenError):
+    """A factor is written in a way that liegen cannot accept."""
+
+
+class DomainError(LiegenError):
+    """A residual or Jacobian has no finite value anywhere that samples reach."""
+
+
+class SourceError(LiegenError):
+    """A file with factors cannot be found, imported, or holds no such factor."""
+
+
+class OutputError(LiegenError):
+    """An output folder cannot be written without harm to what is there."""
+
+
+class ToolError(LiegenError):
+    """An outside tool (a C compiler) is missing or failed."""

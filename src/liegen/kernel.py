@@ -1,0 +1,83 @@
+"""``Kernel``: everything that is known of a derived factor, a frozen value that emission and checks read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from liegen.errors import Site
+from liegen.program import Program
+
+
+@dataclass(frozen=True)
+class Argument:
+    """A parameter: ``storage`` names its scalars (``("qx", ..., "z")`` for SE3), ``dim`` is its tangent's size."""
+
+    name: str
+    manifold: str
+    storage: tuple[str, ...]
+    dim: int
+    variable: bool
+
+    @property
+    def size(self) -> int:
+        """Number of stored scalars."""
+        return len(self.storage)
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named result on a manifold; its Jacobians are ``dim`` rows by each variable's ``dim`` columns."""
+
+    name: str
+    manifold: str
+    storage: tuple[str, ...]
+    dim: int
+
+    @property
+    def size(self) -> int:
+        """Number of stored scalars."""
+        return len(self.storage)
+
+
+@dataclass(frozen=True)
+class PassCount:
+    """Operations left after a pass: a row of the table that ``explain`` prints."""
+
+    name: str
+    operations: int
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A derived factor.
+
+    ``value`` computes the outputs; ``jacobians`` the outputs, then for each output its Jacobian by each
+    variable, as ports named ``res_D_x`` of shape (output dim, variable dim). Both read all arguments, in
+    order, as ports of shape (size,), and carry the same requirements.
+    """
+
+    name: str
+    doc: str
+    site: Site
+    arguments: tuple[Argument, ...]
+    outputs: tuple[Output, ...]
+    formula: tuple[str, ...]  # lines such as "res = z.local(x.between(y))"
+    jacobian_formulas: tuple[str, ...]  # lines such as "res_D_y = Jr^-1(res)"
+    conventions: tuple[str, ...]  # one line per manifold that occurs: storage, tangent, retract
+    value: Program
+    jacobians: Program
+    passes: tuple[PassCount, ...]
+
+    @property
+    def variables(self) -> tuple[Argument, ...]:
+        """The arguments that get Jacobians."""
+        return tuple(a for a in self.arguments if a.variable)
+
+    @property
+    def given(self) -> tuple[Argument, ...]:
+        """The arguments that get none."""
+        return tuple(a for a in self.arguments if not a.variable)
+
+    def jacobian_name(self, output: Output, variable: Argument) -> str:
+        """``res_D_x``."""
+        return f"{output.name}_D_{variable.name}"
