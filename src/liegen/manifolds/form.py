@@ -1,0 +1,229 @@
+"""The contract of a manifold and of a group: closed forms on tuples of scalars of any backend.
+
+A group file writes the forms that are particular to it; everything that follows from them stands here.
+Conventions: right perturbations, ``x.retract(d) = x exp(d)``, ``x.local(y) = log(x^-1 y)``.
+Reference: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation in robotics" (2018), cited as
+"micro Lie" with its equation numbers.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+
+from liegen.algebra import Scalar
+from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
+
+Coords = Sequence[Scalar]
+#: For each operand the derivative of a result, as a chain, or None where there is none.
+Blocks = tuple[Chain | None, ...]
+
+
+class ManifoldForm(ABC):
+    """A manifold: how it is stored, and its default chart."""
+
+    name: str
+    storage: tuple[str, ...]  # names of the stored scalars
+    tangent: tuple[str, ...]  # names of the tangent's coordinates, with units
+    note: str = ""  # one line on storage and chart for headers and documentation
+
+    @property
+    def dim(self) -> int:
+        """Dimension of the tangent space."""
+        return len(self.tangent)
+
+    @property
+    def size(self) -> int:
+        """Number of stored scalars."""
+        return len(self.storage)
+
+    @abstractmethod
+    def retract(self, x: Coords, d: Coords) -> Vector:
+        """The point that the tangent vector ``d`` at ``x`` leads to."""
+
+    @abstractmethod
+    def local(self, x: Coords, y: Coords) -> Vector:
+        """The tangent vector at ``x`` that leads to ``y``."""
+
+    def lift(self, x: Coords) -> Matrix | None:
+        """d local(x, y)/dy at y = x, dim x size; None: by automatic differentiation of ``local``."""
+        return None
+
+    def retract_blocks(self) -> Callable[..., Blocks] | None:
+        """Rule (result, x, d) -> blocks of ``retract``; None: automatic differentiation through the storage."""
+        return None
+
+    def local_blocks(self) -> Callable[..., Blocks] | None:
+        """Rule (result, x, y) -> blocks of ``local``; None: automatic differentiation through the storage."""
+        return None
+
+
+class GroupForm(ManifoldForm):
+    """A Lie group."""
+
+    @abstractmethod
+    def identity(self) -> Vector:
+        """The neutral element."""
+
+    @abstractmethod
+    def compose(self, a: Coords, b: Coords) -> Vector:
+        """The product a b."""
+
+    @abstractmethod
+    def inverse(self, a: Coords) -> Vector:
+        """The inverse of a."""
+
+    @abstractmethod
+    def exp(self, d: Coords) -> Vector:
+        """The group's exponential."""
+
+    @abstractmethod
+    def log(self, a: Coords) -> Vector:
+        """The group's logarithm, the branch of the shorter way round."""
+
+    @abstractmethod
+    def adjoint(self, a: Coords) -> Chain:
+        """Ad_a with a exp(d) = exp(Ad_a d) a (micro Lie, eq. 29-32)."""
+
+    @abstractmethod
+    def Jr(self, d: Coords) -> Matrix:
+        """Right Jacobian: exp(d + e) = exp(d) exp(Jr(d) e) to first order (micro Lie, eq. 67)."""
+
+    @abstractmethod
+    def Jr_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
+        """Inverse of ``Jr``. ``principal``: d is a logarithm, so its rotation is at most pi."""
+
+    @abstractmethod
+    def matrix(self, a: Coords) -> Matrix:
+        """The element as a square matrix; products of elements are products of matrices."""
+
+    def between(self, a: Coords, b: Coords) -> Vector:
+        """The product a^-1 b."""
+        return self.compose(self.inverse(a), b)
+
+    def adjoint_inverse(self, a: Coords) -> Chain:
+        """Ad of a^-1."""
+        return self.adjoint(self.inverse(a))
+
+    def Jl(self, d: Coords) -> Matrix:
+        """Left Jacobian, Jl(d) = Jr(-d) (micro Lie, eq. 76)."""
+        return self.Jr(negate(d))
+
+    def Jl_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
+        """Inverse of ``Jl``."""
+        return self.Jr_inv(negate(d), principal=principal)
+
+    def retract(self, x: Coords, d: Coords) -> Vector:
+        """Return x exp(d)."""
+        return self.compose(x, self.exp(d))
+
+    def local(self, x: Coords, y: Coords) -> Vector:
+        """Return log(x^-1 y)."""
+        return self.log(self.between(x, y))
+
+    def retract_blocks(self) -> Callable[..., Blocks]:
+        """d/dx = Ad(exp(d))^-1, d/dd = Jr(d) (micro Lie, eq. 82-83)."""
+        return lambda _, _x, d: (self.adjoint_inverse(self.exp(d)), (self.Jr(d),))
+
+    def local_blocks(self) -> Callable[..., Blocks]:
+        """d/dy = Jr^-1(r), d/dx = -Jl^-1(r) (micro Lie, eq. 79, 84)."""
+        return lambda r, _x, _y: (
+            (_negative(self.Jl_inv(r, principal=True)),),
+            (self.Jr_inv(r, principal=True),),
+        )
+
+    def compose_blocks(self) -> Callable[..., Blocks]:
+        """d/da = Ad(b^-1), d/db = I (micro Lie, eq. 63-64)."""
+        return lambda _, _a, b: (self.adjoint_inverse(b), (eye(self.dim),))
+
+    def inverse_blocks(self) -> Callable[..., Blocks]:
+        """d/da = -Ad(a) (micro Lie, eq. 62)."""
+        return lambda _, a: (_negated(self.adjoint(a)),)
+
+    def between_blocks(self) -> Callable[..., Blocks]:
+        """d/da = -Ad(c^-1) with c = a^-1 b, d/db = I (micro Lie, eq. 81)."""
+        return lambda c, _a, _b: (_negated(self.adjoint_inverse(c)), (eye(self.dim),))
+
+    def exp_blocks(self) -> Callable[..., Blocks]:
+        """d/dd = Jr(d)."""
+        return lambda _, d: ((self.Jr(d),),)
+
+    def log_blocks(self) -> Callable[..., Blocks]:
+        """d/da = Jr^-1(log a) (micro Lie, eq. 79)."""
+        return lambda r, _a: ((self.Jr_inv(r, principal=True),),)
+
+    def adjoint_matrix(self, a: Coords) -> Matrix:
+        """Ad_a multiplied out."""
+        return product(self.adjoint(a))
+
+
+def _negative(a: Matrix) -> Matrix:
+    return tuple(negate(row) for row in a)
+
+
+def _negated(chain: Chain) -> Chain:
+    return (_negative(chain[0]), *chain[1:])
+
+
+class PoseForm(GroupForm):
+    """A semidirect product of a rotation and a translation: x = (R, t), x p = R p + t."""
+
+    rotation: RotationForm
+    rotation_first: bool
+
+    def join(self, rotation: Coords, translation: Coords) -> Vector:
+        """Coordinates from both parts."""
+        return (*rotation, *translation)
+
+    def rotation_of(self, x: Coords) -> Vector:
+        """The rotation's coordinates."""
+        return tuple(x[: self.rotation.size])
+
+    def translation_of(self, x: Coords) -> Vector:
+        """The translation."""
+        return tuple(x[self.rotation.size :])
+
+    def in_order(self, rotation: Matrix, translation: Matrix) -> tuple[Matrix, Matrix]:
+        """Columns (or rows) of both parts in the order of this group's tangent."""
+        return (rotation, translation) if self.rotation_first else (translation, rotation)
+
+    def identity(self) -> Vector:
+        """No rotation, no translation."""
+        return self.join(self.rotation.identity(), (0,) * self.rotation.space)
+
+    def compose(self, a: Coords, b: Coords) -> Vector:
+        """(R_a R_b, t_a + R_a t_b)."""
+        q, moved = self.rotation_of(a), self.rotation.rotate(self.rotation_of(a), self.translation_of(b))
+        t = tuple(s + u for s, u in zip(self.translation_of(a), moved, strict=True))
+        return self.join(self.rotation.compose(q, self.rotation_of(b)), t)
+
+    def inverse(self, a: Coords) -> Vector:
+        """(R^T, -R^T t)."""
+        q = self.rotation.inverse(self.rotation_of(a))
+        return self.join(q, negate(self.rotation.rotate(q, self.translation_of(a))))
+
+    def between(self, a: Coords, b: Coords) -> Vector:
+        """(R_a^T R_b, R_a^T (t_b - t_a))."""
+        q = self.rotation.inverse(self.rotation_of(a))
+        d = tuple(u - s for s, u in zip(self.translation_of(a), self.translation_of(b), strict=True))
+        return self.join(self.rotation.compose(q, self.rotation_of(b)), self.rotation.rotate(q, d))
+
+    def matrix(self, a: Coords) -> Matrix:
+        """The homogeneous matrix [[R, t], [0, 1]]."""
+        R = self.rotation.matrix(self.rotation_of(a))
+        rows = tuple((*row, t) for row, t in zip(R, self.translation_of(a), strict=True))
+        return (*rows, (0,) * self.rotation.space + (1,))
+
+
+class RotationForm(GroupForm):
+    """A group of rotations of the plane or of space."""
+
+    space: int  # dimension of the vectors that it rotates
+
+    @abstractmethod
+    def rotate(self, a: Coords, v: Coords) -> Vector:
+        """R v, the cheapest way for a single vector."""
+
+    @abstractmethod
+    def generator(self, v: Coords) -> Matrix:
+        """d(exp(e) v)/de at 0, space x dim."""

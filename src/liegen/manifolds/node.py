@@ -1,0 +1,204 @@
+"""Typed values and the operations on them.
+
+A value holds either scalars of some backend (then an operation computes at once) or a node of the graph of
+a factor that is being traced (then it adds a node). ``apply`` is the only place that knows the difference.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar, NoReturn, Self, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.algebra import Scalar
+from liegen.algebra.linear import Vector as Coordinates
+from liegen.errors import DefinitionError, Site
+
+from .form import Blocks, ManifoldForm
+
+_PACKAGE = str(Path(__file__).resolve().parent.parent)
+_LIBRARY = str(Path(_PACKAGE) / "library")
+V = TypeVar("V", bound="Value")
+
+
+@dataclass(frozen=True, eq=False)
+class Operation:
+    """One operation of the language.
+
+    ``value(*coords)`` computes the result's coordinates on scalars of any backend. ``blocks(result, *coords)``
+    gives the tangent-space Jacobian by each operand; None stands for automatic differentiation through the
+    storage. ``show`` is a format string for the operands. ``parameters`` are the constants that it carries.
+    """
+
+    name: str
+    result: type[Value]
+    value: Callable[..., Coordinates]
+    blocks: Callable[..., Blocks] | None
+    show: str
+    parameters: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """An operation applied to operands at a line of the user's file."""
+
+    operation: Operation
+    operands: tuple[Node, ...]
+    site: Site
+
+    @property
+    def manifold(self) -> type[Value]:
+        """The class of the result."""
+        return self.operation.result
+
+
+@dataclass(frozen=True, eq=False)
+class Leaf(Operation):
+    """A parameter (``coords`` is empty) or a constant of the graph."""
+
+    coords: Coordinates = field(default=())
+
+
+class Value:
+    """A typed value: an element of a manifold, or a condition."""
+
+    form: ClassVar[ManifoldForm]
+    __slots__ = ("_coords", "_node")
+
+    _coords: Coordinates
+    _node: Node | None
+
+    @classmethod
+    def holding(cls, coords: Sequence[Scalar] = (), node: Node | None = None) -> Self:
+        """A value of this class from its stored scalars, or standing for a node."""
+        value = object.__new__(cls)
+        object.__setattr__(value, "_coords", tuple(coords))
+        object.__setattr__(value, "_node", node)
+        return value
+
+    @classmethod
+    def from_storage(cls, array: object) -> Self:
+        """From an array of shape (..., n) of stored numbers, in the order of ``form.storage``.
+
+        Raises DefinitionError when the last dimension is not n.
+        """
+        numbers = np.asarray(array, dtype=np.float64)
+        if numbers.ndim == 0 or numbers.shape[-1] != cls.form.size:
+            raise DefinitionError(
+                f"{cls.__name__}: an array of shape (..., {cls.form.size}) is needed "
+                f"({', '.join(cls.form.storage)}), this one has shape {numbers.shape}"
+            )
+        return cls.holding([numbers[..., k][()] for k in range(cls.form.size)])
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} values cannot be changed; make a new one")
+
+    @property
+    def traced(self) -> bool:
+        """Whether this value stands for a node of a factor's graph."""
+        return self._node is not None
+
+    @property
+    def coords(self) -> Coordinates:
+        """The stored scalars. Raises DefinitionError on a traced value."""
+        if self._node is not None:
+            refuse(self, "read the numbers of")
+        return self._coords
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float64]:
+        if self._node is not None:
+            refuse(self, "turn into a NumPy array")
+        parts = np.broadcast_arrays(*self._coords) if self._coords else []
+        return np.stack(parts, axis=-1).astype(dtype or np.float64)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
+        reflected = {"add": "__radd__", "subtract": "__rsub__", "multiply": "__rmul__",
+                     "divide": "__rtruediv__", "matmul": "__rmatmul__"}  # fmt: skip
+        name = reflected.get(ufunc.__name__)
+        if method == "__call__" and name and len(inputs) == 2 and inputs[1] is self and not kwargs:
+            result = getattr(type(self), name, lambda *_: NotImplemented)(self, inputs[0])
+            if result is not NotImplemented:
+                return result
+        raise DefinitionError(
+            f"{here()}: np.{ufunc.__name__} does not take a {type(self).__name__}; "
+            "write the formula with liegen's functions (liegen.sin, norm, dot, stack, ...) and operators"
+        )
+
+    def __bool__(self) -> bool:
+        if self._node is None and len(self._coords) == 1:
+            return bool(self._coords[0])
+        refuse(self, "branch on")
+
+    def __float__(self) -> float:
+        if self._node is None and len(self._coords) == 1:
+            return float(self._coords[0])
+        refuse(self, "turn into a float (math.sin and float() do)")
+
+    def __eq__(self, other: object) -> bool:
+        if self._node is not None or (isinstance(other, Value) and other.traced):
+            refuse(self, "compare with ==")
+        same = type(self) is type(other) and isinstance(other, Value)
+        return same and bool(np.array_equal(np.asarray(self), np.asarray(other)))
+
+    __hash__: ClassVar[None]  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        if self._node is not None:
+            return f"<{type(self).__name__} of a traced factor>"
+        numbers = ", ".join(f"{k}={v!s}" for k, v in zip(self.form.storage, self._coords, strict=True))
+        return f"{type(self).__name__}({numbers})"
+
+
+def refuse(value: Value, what: str) -> NoReturn:
+    """Raise the error for Python code that needs the number of a traced value."""
+    raise DefinitionError(
+        f"{here()}: cannot {what} a {type(value).__name__} while a factor is traced: it has no number yet. "
+        "Use liegen.where, minimum, maximum, abs and liegen's own functions instead of if, math and numpy"
+    )
+
+
+def here() -> Site:
+    """The nearest line outside liegen's machinery: the user's, or the library's."""
+    frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
+    while frame.f_back is not None:
+        file = frame.f_code.co_filename
+        if not file.startswith(_PACKAGE) or file.startswith(_LIBRARY):
+            break
+        frame = frame.f_back
+    return Site(Path(frame.f_code.co_filename).name, frame.f_lineno)
+
+
+def apply(operation: Operation, result: type[V], *operands: Value) -> V:
+    """Compute ``operation`` on numbers, or add it to the graph when any operand is traced."""
+    if any(v.traced for v in operands):
+        return result.holding(node=Node(operation, tuple(node_of(v) for v in operands), here()))
+    with np.errstate(all="ignore"):
+        return result.holding(operation.value(*(v.coords for v in operands)))
+
+
+def node_of(value: Value) -> Node:
+    """The node that a value stands for; a constant becomes a leaf."""
+    node = value._node  # pyright: ignore[reportPrivateUsage]
+    if node is not None:
+        return node
+    leaf = Leaf("constant", type(value), _no_value, None, _constant_text(value), coords=value.coords)
+    return Node(leaf, (), Site("", 0))
+
+
+def parameter(cls: type[Value], name: str, site: Site) -> Node:
+    """The leaf of a factor's parameter."""
+    return Node(Leaf("parameter", cls, _no_value, None, name), (), site)
+
+
+def _no_value(*_: object) -> NoReturn:
+    raise TypeError("a leaf has no operands to compute from")
+
+
+def _constant_text(value: Value) -> str:
+    numbers = [f"{float(c):.6g}" for c in np.ravel(np.asarray(value))]
+    return numbers[0] if len(numbers) == 1 else f"{type(value).__name__}({', '.join(numbers)})"

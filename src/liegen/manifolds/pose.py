@@ -1,0 +1,136 @@
+"""``Pose``: what poses of the plane and of space have in common. T_WB is the pose of body B in world W."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Generic, Self, TypeVar, overload
+
+from liegen.algebra.linear import Matrix, beside, eye, matvec, negate, stacked, sub, transpose, zeros
+from liegen.errors import DefinitionError
+
+from .form import Blocks, Coords, PoseForm
+from .group import Group, Manifold, tangent_class
+from .node import Operation, apply, here
+from .rotation import Rotation
+from .vector import R1, Vector, VectorLike, as_vector, norm
+
+Q = TypeVar("Q", bound="Rotation[Any]")
+P = TypeVar("P", bound=Vector)
+B = TypeVar("B", bound=Manifold)
+
+
+class Pose(Group, Generic[Q, P, B]):
+    """A pose (R, t): rotation type Q, points P, bearings B. ``@`` composes with a pose and moves a point."""
+
+    __slots__ = ()
+    form: ClassVar[PoseForm]  # pyright: ignore[reportIncompatibleVariableOverride]
+    rotation_class: ClassVar[type[Any]]
+    bearing_class: ClassVar[type[Any]]
+
+    def __new__(cls, rotation: Q, translation: VectorLike) -> Self:
+        """From a rotation and a translation [m]."""
+        form = cls.form
+        if not isinstance(rotation, cls.rotation_class):
+            raise DefinitionError(
+                f"{here()}: {cls.__name__}(rotation, translation) needs a {cls.rotation_class.__name__}, "
+                f"got a {type(rotation).__name__}"
+            )
+        t = as_vector(translation, form.rotation.space, f"{cls.__name__}(rotation, translation)")
+
+        def blocks(_: Coords, q: Coords, _t: Coords) -> Blocks:
+            """The rotation moves alone, the translation seen from the body."""
+            columns = [(zeros(form.rotation.space, form.rotation.dim), eye(form.rotation.dim)),
+                       (transpose(form.rotation.matrix(q)), zeros(form.rotation.dim, form.rotation.space))]  # fmt: skip
+            return tuple((stacked(*form.in_order(turn, move)),) for move, turn in columns)
+
+        return apply(Operation("pose", cls, form.join, blocks, cls.__name__ + "({0}, {1})"), cls, rotation, t)
+
+    @property
+    def rotation(self) -> Q:
+        """R, the orientation of the body in the world."""
+        form = self.form
+        block = beside(*form.in_order(eye(form.rotation.dim), zeros(form.rotation.dim, form.rotation.space)))
+        operation = Operation(
+            "rotation", self.rotation_class, form.rotation_of, lambda *_: ((block,),), "{0}.rotation"
+        )
+        return apply(operation, self.rotation_class, self)
+
+    @property
+    def translation(self) -> P:
+        """t, the position of the body in the world [m]."""
+        form = self.form
+
+        def blocks(_: Coords, x: Coords) -> Blocks:
+            space, dim = form.rotation.space, form.rotation.dim
+            R = form.rotation.matrix(form.rotation_of(x))
+            return ((R, beside(*form.in_order(zeros(space, dim), eye(space)))),)
+
+        return self._point(
+            Operation("translation", self._points, form.translation_of, blocks, "{0}.translation")
+        )
+
+    def transform_from(self, p: VectorLike) -> P:
+        """R p + t: a point of the body in the world."""
+        form = self.form
+
+        def value(x: Coords, p: Coords) -> Any:
+            moved = matvec(form.rotation.matrix(form.rotation_of(x)), p)
+            return tuple(a + b for a, b in zip(moved, form.translation_of(x), strict=True))
+
+        def blocks(_: Coords, x: Coords, p: Coords) -> Blocks:
+            R = form.rotation.matrix(form.rotation_of(x))
+            columns = form.in_order(form.rotation.generator(p), eye(form.rotation.space))
+            return (R, beside(*columns)), (R,)
+
+        return self._point(
+            Operation("transform_from", self._points, value, blocks, "{0}.transform_from({1})"), p
+        )
+
+    def transform_to(self, p: VectorLike) -> P:
+        """R^T (p - t): a point of the world in the body."""
+        form = self.form
+
+        def value(x: Coords, p: Coords) -> Any:
+            return matvec(
+                transpose(form.rotation.matrix(form.rotation_of(x))), sub(p, form.translation_of(x))
+            )
+
+        def blocks(q: Coords, x: Coords, _: Coords) -> Blocks:
+            columns = form.in_order(form.rotation.generator(q), eye(form.rotation.space))
+            by_pose: Matrix = tuple(negate(row) for row in beside(*columns))
+            return (by_pose,), (transpose(form.rotation.matrix(form.rotation_of(x))),)
+
+        return self._point(Operation("transform_to", self._points, value, blocks, "{0}.transform_to({1})"), p)
+
+    def range(self, other: Self | VectorLike) -> R1:
+        """Distance to a point or to another pose's position [m]; 0 with gradient 0 where both coincide."""
+        return norm(self._position(other, "range") - self.translation)
+
+    def bearing(self, other: Self | VectorLike) -> B:
+        """Direction, seen from the body, of a point or of another pose's position."""
+        return self.bearing_class.direction(self.transform_to(self._position(other, "bearing")))
+
+    @property
+    def _points(self) -> type[Vector]:
+        return tangent_class(self.form.rotation.space)
+
+    def _point(self, operation: Operation, *points: VectorLike) -> Any:
+        where = f"{self.form.name}.{operation.name}"
+        return apply(
+            operation,
+            operation.result,
+            self,
+            *(as_vector(p, self.form.rotation.space, where) for p in points),
+        )
+
+    def _position(self, other: Any, where: str) -> P:
+        if isinstance(other, Pose) and other.form.name == self.form.name:  # pyright: ignore[reportUnknownMemberType]
+            return other.translation  # pyright: ignore[reportUnknownMemberType, reportUnknownVariableType]
+        point: Any = as_vector(other, self.form.rotation.space, f"{self.form.name}.{where}")
+        return point
+
+    @overload
+    def __matmul__(self, other: Self) -> Self: ...
+    @overload
+    def __matmul__(self, other: VectorLike) -> P: ...
+    def __matmul__(self, other: Any) -> Any:
+        return self.compose(other) if isinstance(other, Pose) else self.transform_from(other)

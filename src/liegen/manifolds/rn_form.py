@@ -1,0 +1,86 @@
+"""R^n as a group under addition."""
+
+from __future__ import annotations
+
+from liegen.algebra import Scalar, fabs, lt, select, sqrt
+from liegen.algebra.linear import Chain, Matrix, Vector, dot, eye, negate, scale
+
+from .form import Coords, GroupForm
+
+_TINY, _HUGE, _SHIFT = 2.0**-900, 2.0**900, 2.0**600
+
+
+class RForm(GroupForm):
+    """Vectors with n components; every chart is the identity."""
+
+    def __init__(self, n: int) -> None:
+        self.name = f"R{n}"
+        self.storage = tuple("xyz"[:n]) if n <= 3 else tuple(f"v{i}" for i in range(n))
+        self.tangent = self.storage
+        self.note = f"R{n}: {n} numbers; tangent: the same, x.retract(d) = x + d"
+
+    def identity(self) -> Vector:
+        return (0,) * self.dim
+
+    def compose(self, a: Coords, b: Coords) -> Vector:
+        return tuple(x + y for x, y in zip(a, b, strict=True))
+
+    def inverse(self, a: Coords) -> Vector:
+        return negate(a)
+
+    def between(self, a: Coords, b: Coords) -> Vector:
+        return tuple(y - x for x, y in zip(a, b, strict=True))
+
+    def exp(self, d: Coords) -> Vector:
+        return tuple(d)
+
+    def log(self, a: Coords) -> Vector:
+        return tuple(a)
+
+    def adjoint(self, a: Coords) -> Chain:
+        return (eye(self.dim),)
+
+    def adjoint_inverse(self, a: Coords) -> Chain:
+        return (eye(self.dim),)
+
+    def Jr(self, d: Coords) -> Matrix:
+        return eye(self.dim)
+
+    def Jr_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
+        return eye(self.dim)
+
+    def matrix(self, a: Coords) -> Matrix:
+        """The translation as a homogeneous matrix."""
+        rows = tuple((*row, x) for row, x in zip(eye(self.dim), a, strict=True))
+        return (*rows, (0,) * self.dim + (1,))
+
+
+def scaled_length(v: Coords) -> tuple[Vector, Scalar, Scalar]:
+    """(w, |w|, k) with w = k v and k a power of two that keeps |w|^2 from under- and overflow."""
+    square = dot(v, v)
+    k = select(lt(square, _TINY), _SHIFT, select(lt(_HUGE, square), 1 / _SHIFT, 1.0))
+    w = scale(k, v)
+    return w, sqrt(dot(w, w)), k
+
+
+def length(v: Coords) -> Scalar:
+    """|v|, right to rounding for components from 1e-320 to 1e300."""
+    if len(v) == 1:
+        return fabs(v[0])
+    _, n, k = scaled_length(v)
+    return n / k
+
+
+def direction(v: Coords) -> Vector:
+    """v / |v|; not a number at 0."""
+    w, n, _ = scaled_length(v)
+    return scale(1 / n, w)
+
+
+def direction_or_zero(v: Coords) -> Vector:
+    """v / |v|, and 0 at 0: the gradient of ``length``, the mean over all directions at the kink."""
+    if len(v) == 1:
+        return (select(lt(v[0], 0), -1.0, select(lt(0, v[0]), 1.0, 0.0)),)
+    w, n, _ = scaled_length(v)
+    positive = lt(0, n)
+    return scale(select(positive, 1 / select(positive, n, 1.0), 0.0), w)

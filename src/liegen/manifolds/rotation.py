@@ -1,0 +1,70 @@
+"""``Rotation``: what rotations of the plane and of space have in common."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Generic, Self, TypeVar, overload
+
+from liegen.algebra.linear import matvec, negate, transpose
+
+from .form import Blocks, Coords, RotationForm
+from .group import Group, tangent_class
+from .node import Operation, apply
+from .vector import Vector, VectorLike, as_vector
+
+P = TypeVar("P", bound=Vector)
+
+
+class Rotation(Group, Generic[P]):
+    """A rotation R. ``@`` composes with a rotation and turns a vector."""
+
+    __slots__ = ()
+    form: ClassVar[RotationForm]  # pyright: ignore[reportIncompatibleVariableOverride]
+
+    def rotate(self, v: VectorLike) -> P:
+        """R v."""
+        form = self.form
+
+        def blocks(_: Coords, q: Coords, v: Coords) -> Blocks:
+            R = form.matrix(q)
+            return (R, form.generator(v)), (R,)
+
+        return self._turn(
+            Operation(
+                "rotate",
+                tangent_class(form.space),
+                lambda q, v: matvec(form.matrix(q), v),
+                blocks,
+                "{0} @ {1}",
+            ),
+            v,
+        )
+
+    def unrotate(self, v: VectorLike) -> P:
+        """R^-1 v."""
+        form = self.form
+
+        def blocks(w: Coords, q: Coords, _: Coords) -> Blocks:
+            turned = tuple(negate(row) for row in form.generator(w))
+            return (turned,), (transpose(form.matrix(q)),)
+
+        def value(q: Coords, v: Coords) -> Any:
+            return matvec(transpose(form.matrix(q)), v)
+
+        return self._turn(
+            Operation("unrotate", tangent_class(form.space), value, blocks, "{0}.unrotate({1})"), v
+        )
+
+    def _turn(self, operation: Operation, v: VectorLike) -> Any:
+        where = f"{self.form.name}.{operation.name}"
+        return apply(operation, operation.result, self, as_vector(v, self.form.space, where))
+
+    @overload
+    def __matmul__(self, other: Self) -> Self: ...
+    @overload
+    def __matmul__(self, other: VectorLike) -> P: ...
+    def __matmul__(self, other: Any) -> Any:
+        return (
+            self.compose(other)
+            if isinstance(other, Group) and not isinstance(other, Vector)
+            else self.rotate(other)
+        )

@@ -1,0 +1,94 @@
+"""SO(3): closed forms on the unit quaternion (x, y, z, w)."""
+
+from __future__ import annotations
+
+from liegen.algebra import Scalar, lt, select
+from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, negate, scale, skew
+from liegen.coefficients import inverse_jacobian, log_factor, stumpff
+
+from .form import Coords, RotationForm
+
+
+def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:
+    """I + a [phi]x + b [phi]x^2, with [phi]x^2 = phi phi^T - |phi|^2 I."""
+    x, y, z = phi
+    bx, by, bz = scale(b, phi)
+    k = 1 - b * dot(phi, phi)
+    ax, ay, az = scale(a, phi)
+    xy, xz, yz = bx * y, bx * z, by * z
+    return (
+        (k + bx * x, xy - az, xz + ay),
+        (xy + az, k + by * y, yz - ax),
+        (xz - ay, yz + ax, k + bz * z),
+    )
+
+
+class SO3Form(RotationForm):
+    """Rotations of space."""
+
+    name = "SO3"
+    storage = ("qx", "qy", "qz", "qw")
+    tangent = ("rx [rad]", "ry [rad]", "rz [rad]")
+    note = "SO3: stored unit quaternion (x, y, z, w); tangent: rotation vector [rad]; x.retract(d) = x exp(d)"
+    space = 3
+
+    def identity(self) -> Vector:
+        return (0, 0, 0, 1)
+
+    def compose(self, a: Coords, b: Coords) -> Vector:
+        ax, ay, az, aw = a
+        bx, by, bz, bw = b
+        return (
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz,
+        )
+
+    def inverse(self, a: Coords) -> Vector:
+        return (-a[0], -a[1], -a[2], a[3])
+
+    def exp(self, d: Coords) -> Vector:
+        """(sin(t/2)/t d, cos(t/2)) with t = |d|."""
+        c0, c1 = stumpff(dot(d, d) * 0.25, 1)
+        return (*scale(c1 * 0.5, d), c0)
+
+    def log(self, a: Coords) -> Vector:
+        """The short way round: q and -q are one rotation. At w = 0 the stored sign of the vector decides."""
+        *v, w = a
+        sign = select(lt(w, 0), -1.0, 1.0)
+        return scale(log_factor(w * sign) * sign, v)
+
+    def adjoint(self, a: Coords) -> Chain:
+        return (self.matrix(a),)
+
+    def Jr(self, d: Coords) -> Matrix:
+        """I - c2 [d]x + c3 [d]x^2 (micro Lie, eq. 143)."""
+        _, _, c2, c3 = stumpff(dot(d, d), 3)
+        return series(d, -c2, c3)
+
+    def Jr_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
+        """I + [d]x / 2 + D [d]x^2 (micro Lie, eq. 144)."""
+        D, _ = inverse_jacobian(dot(d, d), principal=principal)
+        return series(d, 0.5, D)
+
+    def matrix(self, a: Coords) -> Matrix:
+        x, y, z, w = a
+        x2, y2, z2 = x * 2, y * 2, z * 2
+        xx, yy, zz = x * x2, y * y2, z * z2
+        xy, xz, yz = x * y2, x * z2, y * z2
+        wx, wy, wz = w * x2, w * y2, w * z2
+        return (
+            (1 - (yy + zz), xy - wz, xz + wy),
+            (xy + wz, 1 - (xx + zz), yz - wx),
+            (xz - wy, yz + wx, 1 - (xx + yy)),
+        )
+
+    def rotate(self, a: Coords, v: Coords) -> Vector:
+        """v + w u + q x u with u = 2 q x v."""
+        *q, w = a
+        u = scale(2, cross(q, v))
+        return tuple(p + w * r + s for p, r, s in zip(v, u, cross(q, u), strict=True))
+
+    def generator(self, v: Coords) -> Matrix:
+        return skew(negate(v))

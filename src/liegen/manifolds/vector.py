@@ -1,0 +1,369 @@
+"""Vectors: ``Vector`` of any dimension, ``R1`` (a scalar) to ``R9``, and ``class R12(R, dim=12)``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any, ClassVar, Self, SupportsIndex, TypeVar, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.algebra import Scalar, call
+from liegen.algebra.linear import Matrix, column, diagonal, eye, matvec
+from liegen.algebra.linear import Vector as Coordinates
+from liegen.errors import DefinitionError
+
+from .condition import Condition
+from .form import Blocks
+from .group import Group
+from .node import Operation, Value, apply, here
+from .rn_form import RForm, direction_or_zero, length
+
+V = TypeVar("V", bound="Vector")
+
+
+class Vector(Group):
+    """A vector. Arithmetic is elementwise, as in NumPy; a scalar (``R1`` or a number) fits any dimension."""
+
+    __slots__ = ()
+    form: ClassVar[RForm]  # pyright: ignore[reportIncompatibleVariableOverride]
+
+    @overload
+    def __add__(self: R1, other: V) -> V: ...
+    @overload
+    def __add__(self, other: VectorLike) -> Self: ...
+    def __add__(self, other: Any) -> Any:
+        return _binary("add", self, other)
+
+    @overload
+    def __sub__(self: R1, other: V) -> V: ...
+    @overload
+    def __sub__(self, other: VectorLike) -> Self: ...
+    def __sub__(self, other: Any) -> Any:
+        return _binary("sub", self, other)
+
+    @overload
+    def __mul__(self: R1, other: V) -> V: ...
+    @overload
+    def __mul__(self, other: VectorLike) -> Self: ...
+    def __mul__(self, other: Any) -> Any:
+        return _binary("mul", self, other)
+
+    @overload
+    def __truediv__(self: R1, other: V) -> V: ...
+    @overload
+    def __truediv__(self, other: VectorLike) -> Self: ...
+    def __truediv__(self, other: Any) -> Any:
+        return _binary("div", self, other)
+
+    def __radd__(self, other: float | Sequence[float] | NDArray[Any]) -> Self:
+        return _binary("add", other, self)
+
+    def __rsub__(self, other: float | Sequence[float] | NDArray[Any]) -> Self:
+        return _binary("sub", other, self)
+
+    def __rmul__(self, other: float | Sequence[float] | NDArray[Any]) -> Self:
+        return _binary("mul", other, self)
+
+    def __rtruediv__(self, other: float | Sequence[float] | NDArray[Any]) -> Self:
+        return _binary("div", other, self)
+
+    def __neg__(self) -> Self:
+        return _elementwise("neg", "-{0}", self, lambda a: -a, lambda _, a: (-1,))
+
+    def __pos__(self) -> Self:
+        return self
+
+    def __abs__(self) -> Self:
+        return unary("abs", self)
+
+    def __pow__(self, exponent: int) -> Self:
+        if not isinstance(exponent, int) or exponent < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise DefinitionError(
+                f"{here()}: ** takes a whole number that is not negative; use sqrt, exp and log for other powers"
+            )
+        if exponent == 0:
+            return self * 0 + 1
+        half = self ** (exponent // 2) if exponent > 1 else None
+        square = self if half is None else half * half
+        return square * self if half is not None and exponent % 2 else square
+
+    def __rmatmul__(self, matrix: NDArray[Any]) -> Vector:
+        """``M @ v`` with a constant matrix."""
+        return _constant_product(matrix, self)
+
+    def __lt__(self, other: VectorLike) -> Condition:
+        return _compare("lt", "{0} < {1}", self, other)
+
+    def __gt__(self, other: VectorLike) -> Condition:
+        return _compare("lt", "{0} < {1}", other, self)
+
+    def __le__(self, other: VectorLike) -> Condition:
+        return _compare("le", "{0} <= {1}", self, other)
+
+    def __ge__(self, other: VectorLike) -> Condition:
+        return _compare("le", "{0} <= {1}", other, self)
+
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> R1: ...
+    @overload
+    def __getitem__(self, index: slice) -> Vector: ...
+    def __getitem__(self, index: SupportsIndex | slice) -> Vector:
+        positions = range(self.form.dim)[index]  # raises IndexError, as a list does
+        picked = list(positions) if isinstance(positions, range) else [positions]
+        if not picked:
+            raise DefinitionError(
+                f"{here()}: the slice {index} of a vector with {len(self)} entries is empty"
+            )
+        return _take(self, picked, str(positions) if isinstance(positions, int) else _slice_text(picked))
+
+    def __len__(self) -> int:
+        return self.form.dim
+
+    def range(self, other: Vector) -> R1:
+        """Euclidean distance to another point; 0 with gradient 0 where both coincide."""
+        return norm(as_vector(other, self.form.dim, "range") - self)
+
+
+class R(Vector):
+    """Base of the vector spaces: ``class R12(R, dim=12)`` makes the annotation of larger vectors."""
+
+    __slots__ = ()
+
+    def __init_subclass__(cls, dim: int = 0, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if dim < 1:
+            raise DefinitionError(f"{cls.__name__}: say the dimension, class {cls.__name__}(R, dim=12)")
+        cls.form = rform(dim)
+
+    def __new__(cls, *entries: float | Vector) -> Self:
+        """From its entries, numbers or scalars: ``R3(1, 2, x[0])``."""
+        v = stack(*entries)
+        if len(v) != cls.form.dim:
+            raise DefinitionError(f"{here()}: {cls.__name__} needs {cls.form.dim} entries, got {len(v)}")
+        return cls.holding(v._coords, v._node)  # pyright: ignore[reportPrivateUsage]
+
+
+@cache
+def rform(n: int) -> RForm:
+    """The one closed-form record of R^n."""
+    return RForm(n)
+
+
+class R1(R, dim=1):
+    """A scalar."""
+
+    __slots__ = ()
+
+
+class R2(R, dim=2):
+    """The plane."""
+
+    __slots__ = ()
+
+
+class R3(R, dim=3):
+    """Space."""
+
+    __slots__ = ()
+
+
+class R4(R, dim=4):
+    """Vectors with 4 components."""
+
+    __slots__ = ()
+
+
+class R5(R, dim=5):
+    """Vectors with 5 components."""
+
+    __slots__ = ()
+
+
+class R6(R, dim=6):
+    """Vectors with 6 components."""
+
+    __slots__ = ()
+
+
+class R7(R, dim=7):
+    """Vectors with 7 components."""
+
+    __slots__ = ()
+
+
+class R8(R, dim=8):
+    """Vectors with 8 components."""
+
+    __slots__ = ()
+
+
+class R9(R, dim=9):
+    """Vectors with 9 components."""
+
+    __slots__ = ()
+
+
+VectorLike = Vector | float | Sequence[float] | NDArray[Any]
+_NAMED: tuple[type[R], ...] = (R1, R2, R3, R4, R5, R6, R7, R8, R9)
+
+
+@cache
+def vector_class(n: int) -> type[Vector]:
+    """``R1`` to ``R9``, or a class made for a larger n."""
+    return _NAMED[n - 1] if n <= len(_NAMED) else type(f"R{n}", (R,), {"__slots__": ()}, dim=n)
+
+
+def as_vector(v: Any, dim: int | None = None, where: str = "this operation") -> Vector:
+    """Coerce numbers, sequences and arrays to a constant vector.
+
+    An array is one vector: batches enter through ``from_storage``. Raises DefinitionError for anything that
+    is no vector, and for a dimension other than ``dim``.
+    """
+    if not isinstance(v, Vector):
+        if isinstance(v, Value):
+            raise DefinitionError(f"{here()}: {where} needs a vector, got a {type(v).__name__}")
+        try:
+            numbers = np.atleast_1d(np.asarray(v, dtype=np.float64))
+        except (TypeError, ValueError):
+            raise DefinitionError(
+                f"{here()}: {where} needs a vector or numbers, got a {type(v).__name__}"
+            ) from None
+        if numbers.ndim != 1 or numbers.size == 0:
+            raise DefinitionError(f"{here()}: {where} needs a vector, got an array of shape {numbers.shape}")
+        v = vector_class(numbers.size).from_storage(numbers)
+    if dim is not None and len(v) != dim:
+        raise DefinitionError(
+            f"{here()}: {where} needs a vector with {dim} entries, got {len(v)}; take a slice or stack() to fit"
+        )
+    return v
+
+
+Elementwise = Callable[..., Scalar]
+#: Value, its partial derivatives (result, a, b) -> (by a, by b), and how it is shown.
+_ARITHMETIC: dict[str, tuple[Elementwise, Callable[..., tuple[Scalar, ...]], str]] = {
+    "add": (lambda a, b: a + b, lambda _r, _a, _b: (1, 1), "{0} + {1}"),
+    "sub": (lambda a, b: a - b, lambda _r, _a, _b: (1, -1), "{0} - {1}"),
+    "mul": (lambda a, b: a * b, lambda _r, a, b: (b, a), "{0} * {1}"),
+    "div": (lambda a, b: a / b, lambda r, _a, b: (1 / b, -r / b), "{0} / {1}"),
+}
+
+
+def _binary(name: str, a: Any, b: Any) -> Any:
+    f, partials, show = _ARITHMETIC[name]
+    return _elementwise(name, show, a, b, f, partials)
+
+
+def _elementwise(name: str, show: str, *args: Any) -> Any:
+    """An elementwise operation; the last two arguments are its function and its partials (or None)."""
+    *operands, f, partials = args
+    vectors = [as_vector(v, where=name) for v in operands]
+    n = max(len(v) for v in vectors)
+    if any(len(v) not in (1, n) for v in vectors):
+        raise DefinitionError(
+            f"{here()}: {name} of vectors with {' and '.join(str(len(v)) for v in vectors)} entries; "
+            "both need the same dimension, or one a scalar"
+        )
+
+    def entries(coords: Sequence[Coordinates]) -> list[tuple[Scalar, ...]]:
+        return [tuple(c[k if len(c) > 1 else 0] for c in coords) for k in range(n)]
+
+    def value(*coords: Coordinates) -> Coordinates:
+        return tuple(f(*entry) for entry in entries(coords))
+
+    def blocks(result: Coordinates, *coords: Coordinates) -> Blocks:
+        slopes = [partials(r, *entry) for r, entry in zip(result, entries(coords), strict=True)]
+        by_operand = [tuple(s[k] for s in slopes) for k in range(len(coords))]
+        return tuple(
+            (column(d) if len(c) == 1 else diagonal(d),) for c, d in zip(coords, by_operand, strict=True)
+        )
+
+    cls = vector_class(n)
+    return apply(Operation(name, cls, value, blocks if partials else None, show), cls, *vectors)
+
+
+def unary(name: str, v: Vector | float) -> Any:
+    """A scalar function of the backends, entry by entry, differentiated by CasADi."""
+    return _elementwise(name, name + "({0})", v, lambda a: call(name, a), None)
+
+
+def binary(name: str, show: str, a: Any, b: Any, f: Elementwise, partials: Any = None) -> Any:
+    """An elementwise function of two vectors."""
+    return _elementwise(name, show, a, b, f, partials)
+
+
+def _compare(name: str, show: str, a: Any, b: Any) -> Condition:
+    vectors = as_vector(a, 1, "a comparison"), as_vector(b, 1, "a comparison")
+
+    def value(x: Coordinates, y: Coordinates) -> Coordinates:
+        return (call(name, x[0], y[0]),)
+
+    return apply(Operation(name, Condition, value, None, show), Condition, *vectors)
+
+
+def _take(v: Vector, positions: list[int], text: str) -> Vector:
+    rows = eye(len(v))
+    cls = vector_class(len(positions))
+    operation = Operation(
+        "take",
+        cls,
+        lambda a: tuple(a[k] for k in positions),
+        lambda _, _a: ((tuple(rows[k] for k in positions),),),
+        f"{{0}}[{text}]",
+        tuple(positions),
+    )
+    return apply(operation, cls, v)
+
+
+def _slice_text(positions: list[int]) -> str:
+    step = positions[1] - positions[0] if len(positions) > 1 else 1
+    ends = f"{positions[0]}:{positions[-1] + 1}"
+    return ends if step == 1 else f"{', '.join(map(str, positions))}"
+
+
+def _constant_product(matrix: Any, v: Vector) -> Vector:
+    numbers = np.asarray(matrix, dtype=np.float64)
+    if numbers.ndim != 2 or numbers.shape[1] != len(v):
+        raise DefinitionError(
+            f"{here()}: a matrix of shape {numbers.shape} cannot multiply a vector with {len(v)} entries"
+        )
+    rows: Matrix = tuple(tuple(_plain(x) for x in row) for row in numbers.tolist())
+    cls = vector_class(len(rows))
+    operation = Operation(
+        "matmul", cls, lambda a: matvec(rows, a), lambda _, _a: ((rows,),), "M @ {0}", (numbers.tolist(),)
+    )
+    return apply(operation, cls, v)
+
+
+def _plain(x: float) -> float | int:
+    """Zeros and ones of a constant matrix are structure."""
+    return int(x) if x in (0.0, 1.0, -1.0) else x
+
+
+def stack(*parts: Any) -> Vector:
+    """Join vectors, scalars and numbers to one vector."""
+    vectors = [as_vector(p, where="stack") for p in parts]
+    if not vectors:
+        raise DefinitionError(f"{here()}: stack() needs at least one part")
+    if len(vectors) == 1:
+        return vectors[0]
+    sizes = [len(v) for v in vectors]
+    cls = vector_class(sum(sizes))
+    starts = [sum(sizes[:k]) for k in range(len(sizes))]
+    columns = eye(sum(sizes))
+
+    def blocks(*_: Coordinates) -> Blocks:
+        return tuple((tuple(row[s : s + n] for row in columns),) for s, n in zip(starts, sizes, strict=True))
+
+    show = "stack(" + ", ".join(f"{{{k}}}" for k in range(len(sizes))) + ")"
+    operation = Operation("stack", cls, lambda *c: tuple(x for part in c for x in part), blocks, show)
+    return apply(operation, cls, *vectors)
+
+
+def norm(v: Any) -> R1:
+    """Euclidean length; at 0 its value and its gradient are 0. No under- or overflow."""
+    operation = Operation(
+        "norm", R1, lambda a: (length(a),), lambda _, a: (((direction_or_zero(a),),),), "norm({0})"
+    )
+    return apply(operation, R1, as_vector(v, where="norm"))
