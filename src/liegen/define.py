@@ -1,0 +1,182 @@
+"""The decorators ``@factor`` and ``@function``, and what they make of a Python function."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar, overload
+
+import numpy as np
+
+from liegen.errors import DefinitionError
+from liegen.manifolds import Manifold, Value, Vector
+from liegen.manifolds.node import here
+from liegen.trace import Graph, Outputs, Signature, signature, site_of, trace
+
+if TYPE_CHECKING:
+    from liegen.kernel import Kernel
+
+P = ParamSpec("P")
+T = TypeVar("T")
+S = TypeVar("S", bound="Manifold | Outputs")
+#: Draws the arguments of one sample: (draw, case) -> {argument: value}; see liegen.verify.samples.
+Sampler = Callable[..., Mapping[str, Value]]
+
+
+@dataclass(frozen=True, eq=False)
+class Function(Generic[P, T]):
+    """A formula on Lie groups: callable on typed values, on arrays, and inside other formulas.
+
+    ``graph`` is what was traced, ``kernel`` what was derived from it (at its first use).
+    """
+
+    function: Callable[..., Any]
+    declared: tuple[Signature, ...]
+    name: str
+    doc: str
+    is_factor: bool
+    sampler: Sampler | None = None
+    graph: Graph = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        graph = trace(self.function, self.declared, self.name, self.doc, factor=self.is_factor)
+        object.__setattr__(self, "graph", graph)
+
+    @cached_property
+    def kernel(self) -> Kernel:
+        """The derived factor."""
+        from liegen.derive import derive
+
+        return derive(self.graph)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> T:
+        """Inline into the formula that is being traced, or evaluate on numbers.
+
+        Numbers are typed values or arrays of shape (..., n); the result is typed. Raises DefinitionError for
+        missing, unknown or mismatched arguments.
+        """
+        values = self._bound(args, kwargs)
+        if any(v.traced for v in values.values()):
+            complete = {s.name: s.bound if s.bound is not None else values[s.name] for s in self.declared}
+            return self.function(*(complete[s.name] for s in self.declared if s.positional),
+                                 **{s.name: complete[s.name] for s in self.declared if not s.positional})  # fmt: skip
+        results = self.kernel.value.evaluate({name: v.coords for name, v in values.items()})
+        typed = {name: node.manifold.holding(results[name]) for name, node in self.graph.outputs}
+        single: Any = next(iter(typed.values())) if len(typed) == 1 else Outputs(typed)  # type: ignore[arg-type]
+        return single
+
+    def jacobians(self, *args: P.args, **kwargs: P.kwargs) -> dict[str, np.ndarray[Any, Any]]:
+        """The outputs and all Jacobians on numbers, by name: ``res`` (..., m), ``res_D_x`` (..., m, k)."""
+        values = {name: v.coords for name, v in self._bound(args, kwargs).items()}
+        results = self.kernel.jacobians.evaluate(values)
+        arrays: dict[str, np.ndarray[Any, Any]] = {}
+        for port in self.kernel.jacobians.outputs:
+            entries = np.stack(np.broadcast_arrays(*results[port.name]), axis=-1).astype(np.float64)
+            arrays[port.name] = entries.reshape(*entries.shape[:-1], *port.shape)
+        return arrays
+
+    def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
+        free = [s for s in self.declared if s.bound is None]
+        positional = [s.name for s in free if s.variable]
+        given = dict(zip(positional, args, strict=False)) | dict(kwargs)
+        missing = [s.name for s in free if s.name not in given]
+        unknown = [k for k in given if k not in {s.name for s in free}]
+        if missing or unknown or len(args) > len(positional) or len(given) < len(args) + len(kwargs):
+            usage = ", ".join(positional) + "".join(f", {s.name}=" for s in free if not s.variable)
+            raise DefinitionError(f"{here()}: call it as {self.name}({usage})")
+        return {s.name: self._coerced(s, given[s.name]) for s in free}
+
+    def _coerced(self, s: Signature, value: Any) -> Value:
+        if not isinstance(value, Value):
+            return s.manifold.from_storage(value)
+        if value.form.name != s.manifold.form.name:
+            raise DefinitionError(
+                f"{here()}: {self.name}: argument {s.name!r} must be {s.manifold.form.name}, got {value.form.name}"
+            )
+        return value
+
+    def vary(
+        self, *names: str, name: str = "", doc: str = "", sample: Sampler | None = None
+    ) -> Function[..., T]:
+        """The same formula with the arguments ``names`` as variables."""
+        return self._changed(names, name, doc, sample, variable=True)
+
+    def fix(
+        self, *names: str, name: str = "", doc: str = "", sample: Sampler | None = None
+    ) -> Function[..., T]:
+        """The same formula with the arguments ``names`` given instead of variable."""
+        return self._changed(names, name, doc, sample, variable=False)
+
+    def bind(
+        self, *, name: str = "", doc: str = "", sample: Sampler | None = None, **values: Any
+    ) -> Function[..., T]:
+        """The same formula with constants for some arguments."""
+        self._known(values)
+        declared = tuple(
+            replace(s, bound=self._coerced(s, values[s.name])) if s.name in values else s
+            for s in self.declared
+        )
+        return self._copy(declared, name, doc, sample)
+
+    def _changed(
+        self, names: tuple[str, ...], name: str, doc: str, sample: Sampler | None, *, variable: bool
+    ) -> Function[..., T]:
+        self._known(names)
+        declared = tuple(replace(s, variable=variable) if s.name in names else s for s in self.declared)
+        if not any(s.variable and s.bound is None for s in declared):
+            raise DefinitionError(f"{here()}: {self.name}: no variable is left")
+        return self._copy(declared, name, doc, sample)
+
+    def _copy(
+        self, declared: tuple[Signature, ...], name: str, doc: str, sample: Sampler | None
+    ) -> Function[..., T]:
+        return Function(
+            self.function,
+            declared,
+            name or self.name,
+            doc or self.doc,
+            self.is_factor,
+            sample or self.sampler,
+        )
+
+    def _known(self, names: Any) -> None:
+        possible = [s.name for s in self.declared if s.bound is None]
+        for name in names:
+            if name not in possible:
+                raise DefinitionError(
+                    f"{here()}: {self.name} has no free argument {name!r}; it has {', '.join(possible)}"
+                )
+
+
+@overload
+def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
+@overload
+def factor(*, sample: Sampler | None = None) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
+def factor(function: Any = None, /, *, sample: Sampler | None = None) -> Any:
+    """Make a factor of a function that returns a residual vector.
+
+    Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
+    ``sample`` draws arguments for verification.
+    """
+    return _decorated(function, sample, is_factor=True)
+
+
+@overload
+def function(function: Callable[P, S], /) -> Function[P, S]: ...
+@overload
+def function(*, sample: Sampler | None = None) -> Callable[[Callable[P, S]], Function[P, S]]: ...
+def function(function: Any = None, /, *, sample: Sampler | None = None) -> Any:
+    """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``."""
+    return _decorated(function, sample, is_factor=False)
+
+
+def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool) -> Any:
+    if function is None:
+        return lambda f: _decorated(f, sample, is_factor=is_factor)  # pyright: ignore[reportUnknownLambdaType]
+    if not inspect.isfunction(function):
+        raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
+    doc = inspect.getdoc(function) or ""
+    site_of(function)
+    return Function(function, signature(function), function.__name__, doc, is_factor, sample)

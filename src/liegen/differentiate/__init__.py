@@ -1,0 +1,8 @@
+"""Jacobians at group level: local blocks, their product along the graph, and its order."""
+
+from __future__ import annotations
+
+from .eliminate import ORDERS as ORDERS
+from .graph_jacobian import Expressions as Expressions
+from .graph_jacobian import expressions as expressions
+from .graph_jacobian import jacobians as jacobians

@@ -1,0 +1,85 @@
+"""Differentiating a graph at group level: scalars and Jacobians of its outputs as CasADi SX."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from liegen.algebra.casadi_backend import ca
+from liegen.algebra.linear import Chain, Matrix, eye, zeros
+from liegen.algebra.linear import Vector as Coordinates
+from liegen.manifolds import Leaf
+from liegen.trace import Graph, topological
+
+from .eliminate import Order, accumulate, eliminate
+from .local import local_blocks, symbols
+
+
+@dataclass(frozen=True, eq=False)
+class Expressions:
+    """The graph on SX: symbols of each parameter, and the scalars of every node by its identity."""
+
+    inputs: Mapping[str, Coordinates]
+    scalars: Mapping[int, Coordinates]
+
+
+def expressions(graph: Graph) -> Expressions:
+    """Evaluate every node on fresh symbols of the parameters."""
+    inputs = {p.name: symbols(f"{p.name}_", p.manifold.form.size) for p in graph.parameters}
+    scalars: dict[int, Coordinates] = {id(p.node): inputs[p.name] for p in graph.parameters}
+    for node in graph.nodes():
+        if id(node) in scalars:
+            continue
+        operation = node.operation
+        scalars[id(node)] = (
+            tuple(ca.SX(float(c)) for c in operation.coords)
+            if isinstance(operation, Leaf)
+            else operation.value(*(scalars[id(n)] for n in node.operands))
+        )
+    return Expressions(inputs, scalars)
+
+
+def jacobians(
+    graph: Graph, values: Expressions, order: Order, *, through_storage: bool = False
+) -> dict[tuple[str, str], Matrix]:
+    """Jacobian of each output by each variable, {(output, variable): matrix}."""
+    variables = {id(p.node): p for p in graph.parameters if p.variable}
+    active = _active(graph)
+    edges: dict[tuple[int, int], Chain] = {}
+    for node in graph.nodes():
+        wanted = [id(n) in active for n in node.operands]
+        if id(node) not in active or not any(wanted):
+            continue
+        blocks = local_blocks(
+            node.operation,
+            values.scalars[id(node)],
+            [values.scalars[id(n)] for n in node.operands],
+            [n.manifold for n in node.operands],
+            wanted,
+            through_storage=through_storage,
+        )
+        for n, chain in zip(node.operands, blocks, strict=True):
+            if chain is not None:
+                accumulate(edges, (id(n), id(node)), chain)
+    # an output may feed others too: it ends at a vertex of its own
+    sinks = {name: -k - 1 for k, (name, _) in enumerate(graph.outputs)}
+    for name, node in graph.outputs:
+        if id(node) in active:
+            edges[id(node), sinks[name]] = (eye(node.manifold.form.dim),)
+    inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in variables]
+    products = eliminate(edges, inner, order)
+    return {
+        (name, p.name): products.get((v, sinks[name])) or zeros(node.manifold.form.dim, p.manifold.form.dim)
+        for name, node in graph.outputs
+        for v, p in variables.items()
+    }
+
+
+def _active(graph: Graph) -> set[int]:
+    """The vertices on a way from a variable to an output."""
+    below = {id(p.node) for p in graph.parameters if p.variable}
+    for node in graph.nodes():
+        if any(id(n) in below for n in node.operands):
+            below.add(id(node))
+    above = {id(n) for n in topological([node for _, node in graph.outputs])}
+    return below & above

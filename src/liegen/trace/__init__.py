@@ -1,0 +1,16 @@
+"""From a Python function to a graph of typed operations."""
+
+from __future__ import annotations
+
+from .formula import formula as formula
+from .graph import Domain as Domain
+from .graph import Graph as Graph
+from .graph import Parameter as Parameter
+from .graph import topological as topological
+from .tracer import Outputs as Outputs
+from .tracer import Signature as Signature
+from .tracer import outputs as outputs
+from .tracer import require as require
+from .tracer import signature as signature
+from .tracer import site_of as site_of
+from .tracer import trace as trace

@@ -1,0 +1,60 @@
+"""``Graph``: a factor as a graph of typed operations, a frozen value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from liegen.errors import Site
+from liegen.manifolds import Leaf, Node, Value
+
+
+@dataclass(frozen=True, eq=False)
+class Parameter:
+    """A named argument of a factor: a variable gets Jacobians, a given one does not."""
+
+    name: str
+    manifold: type[Value]
+    variable: bool
+    node: Node
+
+
+@dataclass(frozen=True, eq=False)
+class Domain:
+    """A condition that must hold, and what to say where it does not."""
+
+    condition: Node
+    message: str
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """What a factor computes: parameters, named outputs, and the domain that it states."""
+
+    name: str
+    doc: str
+    site: Site
+    parameters: tuple[Parameter, ...]
+    outputs: tuple[tuple[str, Node], ...]
+    domain: tuple[Domain, ...]
+
+    def nodes(self) -> tuple[Node, ...]:
+        """All nodes that outputs and domain need, operands first."""
+        return topological([node for _, node in self.outputs] + [d.condition for d in self.domain])
+
+
+def topological(roots: Iterable[Node]) -> tuple[Node, ...]:
+    """The nodes under ``roots``, operands before their users, in a fixed order."""
+    order: dict[int, Node] = {}
+    stack: list[tuple[Node, Iterator[Node]]] = []
+    for root in roots:
+        stack.append((root, iter(root.operands)))
+        while stack:
+            node, rest = stack[-1]
+            operand = next((n for n in rest if id(n) not in order), None)
+            if operand is not None:
+                stack.append((operand, iter(operand.operands)))
+            else:
+                order.setdefault(id(node), node)
+                stack.pop()
+    return tuple(order.values())

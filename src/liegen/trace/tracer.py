@@ -1,0 +1,174 @@
+"""Running a user's function on typed values, once, to get its graph."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from liegen.errors import DefinitionError, LiegenError, Site
+from liegen.manifolds import Condition, Manifold, Value, Vector
+from liegen.manifolds.node import Leaf, Node, here, node_of, parameter
+
+from .graph import Domain, Graph, Parameter, topological
+
+_domain: ContextVar[list[Domain] | None] = ContextVar("domain", default=None)
+
+
+@dataclass(frozen=True)
+class Signature:
+    """A parameter as it is declared: ``bound`` holds a value that ``bind`` gave it."""
+
+    name: str
+    manifold: type[Manifold]
+    variable: bool
+    positional: bool
+    bound: Value | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Outputs:
+    """Named outputs of a ``@function``."""
+
+    values: Mapping[str, Manifold]
+
+
+def outputs(**values: Manifold) -> Outputs:
+    """Name the outputs of a ``@function``: ``return outputs(R=..., p=...)``."""
+    for name, value in values.items():
+        if not isinstance(value, Manifold):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise DefinitionError(f"{here()}: output {name!r} is a {type(value).__name__}, not a typed value")
+    return Outputs(dict(values))
+
+
+def require(condition: Condition | bool, message: str) -> None:
+    """State where a factor is defined.
+
+    Outside, generated NumPy and C return NaN, C also the condition's bit, and verification draws its samples
+    inside. A condition on constants that is false is an error at once.
+    """
+    domain = _domain.get()
+    if isinstance(condition, Condition) and condition.traced and domain is not None:
+        domain.append(Domain(node_of(condition), message))
+    elif not bool(condition):
+        raise DefinitionError(f"{here()}: requirement does not hold: {message}")
+
+
+def signature(function: Callable[..., Any]) -> tuple[Signature, ...]:
+    """Read parameters and their manifolds. Raises DefinitionError that names the argument and the cure."""
+    site = site_of(function)
+    name = function.__name__
+    try:
+        hints = get_type_hints(function)
+    except NameError as error:
+        raise DefinitionError(
+            f"{site}: {name}: unknown annotation {error.name!r}; import it: from liegen import {error.name}"
+        ) from None
+    declared: list[Signature] = []
+    for p in inspect.signature(function).parameters.values():
+        if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD):
+            raise DefinitionError(f"{site}: {name}: *{p.name} is not possible; name every argument")
+        declared.append(
+            Signature(p.name, _manifold(hints.get(p.name), f"{site}: {name}: argument {p.name!r}"),
+                      p.kind is not p.KEYWORD_ONLY, p.kind is not p.KEYWORD_ONLY)
+        )  # fmt: skip
+    if not any(s.variable for s in declared):
+        raise DefinitionError(f"{site}: {name} has no variables; put at least one argument before the *")
+    return tuple(declared)
+
+
+def _manifold(annotation: Any, what: str) -> type[Manifold]:
+    if annotation is None:
+        raise DefinitionError(f"{what} has no annotation; write its manifold, as in x: SE3")
+    known = isinstance(annotation, type) and issubclass(annotation, Manifold) and hasattr(annotation, "form")
+    if not known:
+        shown = getattr(annotation, "__name__", str(annotation))
+        raise DefinitionError(
+            f"{what} is annotated with {shown}, which is no manifold; use one of liegen's "
+            "(R1 to R9, SO2, SE2, SO3, SE3, S2, Cal3_S2, Cal3DS2, Cal3Bundler) or class R12(R, dim=12)"
+        )
+    return annotation
+
+
+def site_of(function: Callable[..., Any]) -> Site:
+    """Where a function is defined: file name and line of its ``def``."""
+    code = function.__code__
+    return Site(Path(code.co_filename).name, code.co_firstlineno)
+
+
+def trace(
+    function: Callable[..., Any], declared: tuple[Signature, ...], name: str, doc: str, *, factor: bool
+) -> Graph:
+    """Call ``function`` once on traced values.
+
+    Raises DefinitionError for everything that the function does wrong: a result that is no vector, a variable
+    that no output depends on, and whatever its operations refuse.
+    """
+    site = site_of(function)
+    parameters = tuple(
+        Parameter(s.name, s.manifold, s.variable, parameter(s.manifold, s.name, site))
+        for s in declared
+        if s.bound is None
+    )
+    traced = {p.name: p.manifold.holding(node=p.node) for p in parameters}
+    values = {s.name: s.bound if s.bound is not None else traced[s.name] for s in declared}
+    with _recording() as domain:
+        try:
+            result = function(*(values[s.name] for s in declared if s.positional),
+                              **{s.name: values[s.name] for s in declared if not s.positional})  # fmt: skip
+        except LiegenError as error:
+            raise type(error)(f"{name}: {error}") from None
+    named = _outputs(result, f"{site}: {name}", factor=factor)
+    graph = Graph(name, doc, site, parameters, named, tuple(domain))
+    _all_used(graph)
+    return graph
+
+
+@contextmanager
+def _recording() -> Any:
+    domain: list[Domain] = []
+    token = _domain.set(domain)
+    try:
+        yield domain
+    finally:
+        _domain.reset(token)
+
+
+def _outputs(result: Any, what: str, *, factor: bool) -> tuple[tuple[str, Node], ...]:
+    if factor:
+        if not isinstance(result, Vector):
+            raise DefinitionError(
+                f"{what}: a @factor returns one vector, got {_kind(result)}; "
+                "return x.local(y) for a group element, or use @function with return outputs(...)"
+            )
+        return (("res", node_of(result)),)
+    if isinstance(result, Manifold):
+        return (("out", node_of(result)),)
+    if not isinstance(result, Outputs) or not result.values:
+        raise DefinitionError(
+            f"{what}: a @function returns a typed value or outputs(...), got {_kind(result)}"
+        )
+    return tuple((name, node_of(value)) for name, value in result.values.items())
+
+
+def _kind(result: Any) -> str:
+    return "nothing (is the return missing?)" if result is None else f"a {type(result).__name__}"
+
+
+def _all_used(graph: Graph) -> None:
+    reached = {id(n) for n in topological([node for _, node in graph.outputs])}
+    for p in graph.parameters:
+        if p.variable and id(p.node) not in reached:
+            raise DefinitionError(
+                f"{graph.site}: {graph.name}: variable {p.name!r} is never used by the result; "
+                "use it, or remove it, or put it after the * if it is only given"
+            )
+    for name, node in graph.outputs:
+        if not any(
+            isinstance(n.operation, Leaf) and n.operation.name == "parameter" for n in topological([node])
+        ):
+            raise DefinitionError(f"{graph.site}: {graph.name}: output {name!r} depends on no argument")
