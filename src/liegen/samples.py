@@ -1,0 +1,145 @@
+"""Arguments for verification: what is drawn, and at which special cases.
+
+A sampler is a function ``(draw, case) -> {argument: typed value}``. Factors of the library state their own, so
+that the residual has the rotation angle that the case asks for; ``default_sampler`` serves any other factor.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.coefficients import tables
+from liegen.manifolds import Manifold, Value, Vector
+from liegen.manifolds.form import PoseForm, RotationForm
+
+Sampler = Callable[["Draw", "Case"], Mapping[str, Value]]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A kind of sample.
+
+    ``angle``: rotation [rad] of the residual (or between the arguments), None for any. ``offset``: length of its
+    translation [m], None for any. ``spread``: size of positions [m]. ``negate``: store -q for every quaternion.
+    """
+
+    name: str
+    angle: float | None = None
+    offset: float | None = None
+    spread: float = 1.0
+    negate: bool = False
+
+
+_SWITCHES = tuple(math.sqrt(s) for s in (tables.STUMPFF3_END, tables.STUMPFF5_END, tables.INVERSE_END))
+#: Rotation angles at which digits get lost elsewhere: around 0, at both sides of every switch, around pi.
+ANGLES: tuple[float, ...] = (
+    1e-160, 1e-12, 1e-8, 1e-5, 1e-3, 0.1, 1.0, np.pi - 1e-3, np.pi - 1e-6, np.pi - 1e-8, np.pi,
+    *(side * angle for angle in _SWITCHES for side in (1 - 1e-9, 1 + 1e-9)),
+)  # fmt: skip
+
+CASES: tuple[Case, ...] = (
+    Case("random"),
+    Case("random, 30 m apart", spread=30.0),
+    Case("identity", angle=0.0, offset=0.0),
+    Case("zero rotation", angle=0.0),
+    *(Case(f"angle {angle!r}", angle=angle) for angle in ANGLES),
+    Case("coincident", offset=0.0),
+    *(Case(f"offset {length!r}", offset=length) for length in (1e-170, 1e-8)),
+    Case("kilometres", spread=1e3),
+    Case("thousands of kilometres", spread=1e6),
+    Case("negated quaternions", negate=True),
+)
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A source of random elements with a fixed seed."""
+
+    generator: np.random.Generator
+
+    def uniform(self, low: float, high: float) -> float:
+        """A number in [low, high)."""
+        return float(self.generator.uniform(low, high))
+
+    def unit(self, n: int) -> NDArray[np.float64]:
+        """A unit vector with n components."""
+        v = self.generator.normal(size=n)
+        return v / np.linalg.norm(v)
+
+    def vector(self, n: int, length: float | None = None, spread: float = 1.0) -> NDArray[np.float64]:
+        """A vector of the given length, or of a size around ``spread``."""
+        return self.unit(n) * length if length is not None else self.generator.normal(size=n) * spread
+
+    def element(self, manifold: type[Manifold], spread: float = 1.0) -> Any:
+        """Any element: rotations uniform, positions of size ``spread``, calibrations of a usual camera."""
+        form = manifold.form
+        if isinstance(form, PoseForm):
+            rotation = self._rotation(form.rotation)
+            return manifold.from_storage([*rotation, *self.vector(form.rotation.space, spread=spread)])
+        if isinstance(form, RotationForm):
+            return manifold.from_storage(self._rotation(form))
+        if issubclass(manifold, Vector):
+            return manifold.from_storage(self.vector(form.dim, spread=spread))
+        if form.name in _CALIBRATIONS:
+            low, high = _CALIBRATIONS[form.name]
+            return manifold.from_storage(self.generator.uniform(low, high))
+        return manifold.from_storage(self.unit(form.size))
+
+    def _rotation(self, form: RotationForm) -> NDArray[np.float64]:
+        return self.unit(form.size)
+
+    def tangent(self, manifold: type[Manifold], case: Case) -> NDArray[np.float64]:
+        """A tangent vector whose rotation has the case's angle, whose translation the case's offset."""
+        form = manifold.form
+        angle = self.uniform(0, 3.0) if case.angle is None else case.angle
+        if isinstance(form, PoseForm):
+            parts = self.unit(form.rotation.dim) * angle, self.vector(form.rotation.space, case.offset)
+            return np.concatenate(parts if form.rotation_first else parts[::-1])
+        if issubclass(manifold, Vector):
+            return self.vector(form.dim, case.offset)
+        return self.unit(form.dim) * angle
+
+
+_FOCAL = ([300.0, 300.0, -1.0, 300.0, 200.0], [600.0, 600.0, 1.0, 340.0, 280.0])
+_CALIBRATIONS: Mapping[str, tuple[Sequence[float], Sequence[float]]] = {
+    "Cal3_S2": _FOCAL,
+    "Cal3DS2": ([*_FOCAL[0], -0.2, -0.05, -1e-2, -1e-2], [*_FOCAL[1], 0.2, 0.05, 1e-2, 1e-2]),
+    "Cal3Bundler": ([300.0, -0.2, -0.05, 0.0, 0.0], [600.0, 0.2, 0.05, 100.0, 100.0]),
+}
+
+
+def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:
+    """Group elements of one class keep the case's distance from the first of them, the rest is random."""
+
+    def sample(draw: Draw, case: Case) -> dict[str, Value]:
+        base: dict[str, Manifold] = {}
+        values: dict[str, Value] = {}
+        for name, manifold in manifolds.items():
+            kind = manifold.form.name
+            curved = not issubclass(manifold, Vector) and kind not in _CALIBRATIONS
+            if curved and kind in base and case.angle is not None:
+                values[name] = base[kind].retract(draw.tangent(manifold, case))
+            else:
+                values[name] = draw.element(manifold, case.spread)
+                base.setdefault(kind, values[name])  # type: ignore[arg-type]
+        return values
+
+    return sample
+
+
+def negated(values: Mapping[str, Value]) -> dict[str, Value]:
+    """The same rotations by the other quaternion."""
+    return {name: _NEGATE.get(v.form.name, lambda u: u)(v) for name, v in values.items()}
+
+
+def _negated_quaternion(v: Value) -> Value:
+    return type(v).holding([*(-c for c in v.coords[:4]), *v.coords[4:]])
+
+
+_NEGATE: Mapping[str, Callable[[Value], Value]] = {"SO3": _negated_quaternion, "SE3": _negated_quaternion}
