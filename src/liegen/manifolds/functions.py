@@ -154,7 +154,7 @@ def where(condition: Condition, a: Any, b: Any) -> Any:
     """``a`` where the condition holds, else ``b``. Both are computed, so both must be finite."""
     x, y = as_vector(a, where="where"), as_vector(b, where="where")
     n = max(len(x), len(y))
-    x, y = (as_vector(v * [1.0] * n if len(v) == 1 and n > 1 else v, n, "where") for v in (x, y))
+    x, y = (as_vector(v * ([1.0] * n) if len(v) == 1 and n > 1 else v, n, "where") for v in (x, y))
 
     def value(c: Any, p: Any, q: Any) -> Any:
         return tuple(select(c[0], u, w) for u, w in zip(p, q, strict=True))

@@ -32,9 +32,14 @@ class Signature:
 
 @dataclass(frozen=True, eq=False)
 class Outputs:
-    """Named outputs of a ``@function``."""
+    """Named outputs of a ``@function``, each an attribute."""
 
     values: Mapping[str, Manifold]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name not in self.values:
+            raise AttributeError(f"no output {name!r}; there are {', '.join(self.values)}")
+        return self.values[name]
 
 
 def outputs(**values: Manifold) -> Outputs:

@@ -1,0 +1,66 @@
+"""Imports point one way, along the path of a factor."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "src" / "liegen"
+#: A part may import the parts before it in this order.
+LAYERS = (
+    "errors", "algebra", "coefficients", "manifolds", "trace", "differentiate", "program", "kernel", "derive",
+    "define", "samples", "library", "emit", "sources", "explain", "verify", "bench", "cli",
+)  # fmt: skip
+#: The decorators derive at first use, so define sits beside derive; the lazy package root names everything.
+ROOT_FILES = ("__init__", "__main__")
+
+
+def part(path: Path) -> str:
+    return path.relative_to(SOURCE).parts[0].removesuffix(".py")
+
+
+def imports(path: Path):
+    """liegen parts that a module imports, with the line."""
+    package = ("liegen", *path.relative_to(SOURCE).parts[:-1])
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names = [a.name for a in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else ()
+            names = (
+                [".".join((*base, node.module))]
+                if node.module
+                else [".".join((*base, a.name)) for a in node.names]
+            )
+        else:
+            continue
+        for name in names:
+            if name.startswith("liegen."):
+                yield name.split(".")[1], node.lineno
+
+
+MODULES = [p for p in sorted(SOURCE.rglob("*.py")) if part(p) not in ROOT_FILES]
+
+
+def test_every_part_has_its_layer():
+    assert {part(p) for p in MODULES} <= set(LAYERS)
+    assert len(MODULES) > 40
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(SOURCE)))
+def test_imports_point_one_way(path):
+    for target, line in imports(path):
+        if target in LAYERS:
+            assert LAYERS.index(target) <= LAYERS.index(part(path)), (
+                f"{path.name}:{line} imports liegen.{target}"
+            )
+
+
+def test_files_are_small():
+    long = {p.name: n for p in SOURCE.rglob("*.py") if (n := len(p.read_text().splitlines())) > 350}
+    templates = {
+        p.name: n for p in (ROOT / "templates").rglob("*.j2") if (n := len(p.read_text().splitlines())) > 60
+    }
+    assert long == {}
+    assert templates == {}
