@@ -34,7 +34,7 @@ EXPRESSIONS = {
     "minimum": (lambda x, y: liegen.minimum(x, y), np.minimum(a, b)),
     "maximum": (lambda x, y: liegen.maximum(x, 0.0), np.maximum(a, 0)),
     "where": (lambda x, y: liegen.where(x[0] > y[0], x, y), a),
-    "where scalar": (lambda x, y: liegen.where((x[0] < y[0]) | ~(y[1] >= 4.0), x, 7.0), np.full(3, 7.0)),
+    "where scalar": (lambda x, y: liegen.where((x[0] < y[0]) | ~(y[1] >= 3.0), x, 7.0), np.full(3, 7.0)),
     "functions": (
         lambda x, y: liegen.sin(x) * liegen.cos(y) + liegen.tan(x) - liegen.exp(y) + liegen.sqrt(abs(x)),
         np.sin(a) * np.cos(b) + np.tan(a) - np.exp(b) + np.sqrt(np.abs(a)),
