@@ -1,0 +1,182 @@
+"""The C target: C99 that C++ takes too, one header and one source per factor, and an umbrella header."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from liegen.errors import DefinitionError
+from liegen.kernel import Kernel
+from liegen.program import Port, Program
+
+from .header import argument_text, jacobian_texts, kernel_header, storage_text
+from .printer import Assignment, Listing, Store, print_program
+from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
+from .target import Options, Sheet, Target, scalar_names, words
+
+SYNTAX = Syntax(
+    operators={
+        "add": Operator("+", SUM, "sum"), "sub": Operator("-", SUM, "sum"),
+        "mul": Operator("*", PRODUCT, "product"), "div": Operator("/", PRODUCT, "product"),
+        "neg": Operator("-", PREFIX), "not": Operator("!", PREFIX),
+        "lt": Operator("<", COMPARISON), "le": Operator("<=", COMPARISON),
+        # One strength for both: && within || is legal bare, but compilers warn.
+        "and": Operator("&&", CHOICE + 1, "and"), "or": Operator("||", CHOICE + 1, "or"),
+    },
+    calls={
+        "sqrt": "sqrt", "sin": "sin", "cos": "cos", "tan": "tan", "asin": "asin", "acos": "acos",
+        "atan": "atan", "exp": "exp", "log": "log", "abs": "fabs", "atan2": "atan2",
+    },
+    constant=spell("NAN", "INFINITY"),
+    truth={True: "1", False: "0"},
+    choice="{0} ? {1} : {2}",
+)  # fmt: skip
+
+_TYPES = {"scalar": "double", "condition": "int"}
+#: Requirements that a non-negative ``int`` has bits for.
+_BITS = 31
+
+
+@dataclass(frozen=True)
+class Output:
+    """An output array and the statements that fill it."""
+
+    name: str
+    size: int
+    optional: bool
+    stores: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Function:
+    """A C function; ``jacobians`` are the outputs that may be NULL."""
+
+    name: str
+    summary: str
+    parameters: tuple[str, ...]
+    fallback: str
+    unused: tuple[str, ...]
+    loads: tuple[str, ...]
+    guard: tuple[str, ...]
+    status: str
+    body: tuple[str, ...]
+    outputs: tuple[Output, ...]
+    jacobians: tuple[str, ...]
+
+
+def value_name(kernel: Kernel) -> str:
+    """``between_se3_res``; ``..._value`` for a function whose outputs are named otherwise."""
+    return f"{kernel.name}_res" if [o.name for o in kernel.outputs] == ["res"] else f"{kernel.name}_value"
+
+
+def symbols(kernel: Kernel) -> tuple[str, ...]:
+    """What the source of a kernel defines, without the package's prefix, in either layout."""
+    return (kernel.name, value_name(kernel), f"{kernel.name}_cm")
+
+
+def _assign(assignment: Assignment) -> str:
+    return f"const {_TYPES[assignment.kind]} {assignment.name} = {assignment.text};"
+
+
+def _stores(port: Port, stores: Sequence[Store], column_major: bool) -> tuple[str, ...]:
+    if column_major:
+        stores = sorted(stores, key=lambda store: store.index[::-1])
+    return tuple(f"{store.port}[{k}] = {store.text};" for k, store in enumerate(stores))
+
+
+def _status(listing: Listing) -> str:
+    return " | ".join(f"(({c}) ? 0 : {1 << k})" for k, c in enumerate(listing.conditions))
+
+
+def _function(
+    kernel: Kernel, program: Program, options: Options, suffix: str, column_major: bool
+) -> Function:
+    listing = print_program(program, SYNTAX, scalar_names(kernel))
+    prefix = f"{options.package}_"
+    restrict = f"{options.package.upper()}_RESTRICT"
+    values = {o.name for o in kernel.outputs}
+    jacobians = tuple(port.name for port in program.outputs if port.name not in values)
+    passed = [*(a.name for a in kernel.arguments), *(o.name for o in kernel.outputs)]
+    order = "column-major" if column_major else "row-major"
+    read = {load.port for load in listing.loads}
+    return Function(
+        name=f"{prefix}{suffix}",
+        summary=f"Value and Jacobians ({order}); any Jacobian may be NULL." if jacobians else "Value only.",
+        parameters=(
+            *(f"const double *{restrict} {a.name}" for a in kernel.arguments),
+            *(f"double *{restrict} {port.name}" for port in program.outputs),
+        ),
+        fallback=f"{prefix}{value_name(kernel)}({', '.join(passed)})",
+        unused=tuple(a.name for a in kernel.arguments if a.name not in read),
+        loads=tuple(f"const double {load.name} = {load.port}[{load.index}];" for load in listing.loads),
+        guard=tuple(map(_assign, listing.guard)),
+        status=_status(listing),
+        outputs=tuple(
+            Output(port.name, port.size, port.name not in values, _stores(port, stores, column_major))
+            for port, stores in zip(program.outputs, listing.stores, strict=True)
+        ),
+        jacobians=jacobians,
+        body=tuple(map(_assign, listing.body)),
+    )
+
+
+def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
+    """The names that the templates lay out."""
+    if len(kernel.value.requirements) > _BITS:
+        raise DefinitionError(
+            f"{kernel.name} ({kernel.site}): {len(kernel.value.requirements)} requirements, but the status "
+            f"of the C function has {_BITS} bits; join some conditions"
+        )
+    value, name = value_name(kernel), kernel.name
+    functions = [
+        _function(kernel, kernel.value, options, value, False),
+        _function(kernel, kernel.jacobians, options, name, False),
+    ]
+    if options.layout == "col":
+        functions.append(_function(kernel, kernel.jacobians, options, f"{name}_cm", True))
+    shapes = [f"{a.name}[{a.size}]: {argument_text(a)}" for a in kernel.arguments]
+    shapes += [f"{o.name}[{o.size}]: {storage_text(o)}" for o in kernel.outputs]
+    shapes += [f"{j}[{m} * {n}]: {m} x {n}, {meaning}" for j, (m, n), meaning in jacobian_texts(kernel)]
+    return {
+        "header": kernel_header(kernel, options),
+        "factor": name,
+        "guard_macro": f"{options.package}_{name}_H".upper(),
+        "restrict": f"{options.package.upper()}_RESTRICT",
+        "functions": tuple(functions),
+        "shapes": tuple(shapes),
+        "checked": bool(kernel.value.requirements),
+        "fill": f"{options.package}_{name}_fill",
+    }
+
+
+C_KEYWORDS = words("""
+    auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile
+    while asm typeof
+""")
+CPP_KEYWORDS = words("""
+    alignas alignof and and_eq bitand bitor bool catch char16_t char32_t char8_t class co_await co_return
+    co_yield compl concept const_cast consteval constexpr constinit decltype delete dynamic_cast explicit
+    export false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+    public reinterpret_cast requires static_assert static_cast template this thread_local throw true try
+    typeid typename using virtual wchar_t xor xor_eq
+""")
+HEADERS = words("""
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg
+    stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
+""")
+
+TARGET = Target(
+    name="c",
+    printer=printed,
+    public=symbols,
+    keywords={"C": C_KEYWORDS, "C++": CPP_KEYWORDS},
+    # "linux" and "unix" are macros of compilers there.
+    reserved=words("status NULL NAN INFINITY linux unix").union(SYNTAX.calls.values()),
+    files=HEADERS,
+    factor_sheets=(
+        Sheet("c/factor.h.j2", "c/{factor}.h"),
+        Sheet("c/factor.c.j2", "c/{factor}.c"),
+    ),
+    package_sheets=(Sheet("c/package.h.j2", "c/{package}.h"),),
+)

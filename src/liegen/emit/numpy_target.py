@@ -1,0 +1,184 @@
+"""The NumPy target: a package with one module per factor that imports NumPy only."""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from liegen.kernel import Argument, Kernel
+from liegen.program import Port, Program
+
+from .header import argument_text, doc_lines, jacobian_texts, kernel_header, storage_text
+from .printer import Listing, print_program
+from .syntax import COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
+from .target import Options, Sheet, Target, scalar_names, words
+
+SYNTAX = Syntax(
+    operators={
+        "add": Operator("+", SUM, "sum"), "sub": Operator("-", SUM, "sum"),
+        "mul": Operator("*", PRODUCT, "product"), "div": Operator("/", PRODUCT, "product"),
+        "neg": Operator("-", PREFIX), "not": Operator("~", PREFIX),
+        "lt": Operator("<", COMPARISON), "le": Operator("<=", COMPARISON),
+        "and": Operator("&", COMPARISON + 2, "and"), "or": Operator("|", COMPARISON + 1, "or"),
+    },
+    calls={
+        "sqrt": "np.sqrt", "sin": "np.sin", "cos": "np.cos", "tan": "np.tan", "asin": "np.arcsin",
+        "acos": "np.arccos", "atan": "np.arctan", "exp": "np.exp", "log": "np.log", "abs": "np.abs",
+        "atan2": "np.arctan2", "select": "np.where",
+    },
+    constant=spell("np.nan", "np.inf"),
+    truth={True: "np.True_", False: "np.False_"},
+)  # fmt: skip
+
+#: Longest line of a signature.
+LINE = 100
+
+
+@dataclass(frozen=True)
+class Function:
+    """A private function of a module: the statements that fill component-first arrays."""
+
+    signature: str
+    outputs: tuple[str, ...]
+    loads: tuple[str, ...]
+    statements: tuple[str, ...]
+    stores: tuple[str, ...]
+    invalid: str
+
+
+@dataclass(frozen=True)
+class Interface:
+    """A public function of a module."""
+
+    signature: str
+    arguments: tuple[str, ...]
+    result: str
+    record: str
+    record_doc: str
+    fields: tuple[tuple[str, str], ...]
+    doc: tuple[str, ...]
+
+
+def camel(name: str) -> str:
+    """``BetweenSe3`` of ``between_se3``."""
+    return "".join(part[:1].upper() + part[1:] for part in name.split("_"))
+
+
+def public_names(kernel: Kernel) -> tuple[str, ...]:
+    """What the module of a kernel exports."""
+    record = camel(kernel.name)
+    several = (f"{record}Outputs",) if len(kernel.outputs) > 1 else ()
+    return (f"{record}Jacobians", *several, kernel.name, f"{kernel.name}_jacobians")
+
+
+def _loads(listing: Listing, arguments: Sequence[Argument]) -> tuple[str, ...]:
+    lines: list[str] = []
+    for argument in arguments:
+        mine = [load for load in listing.loads if load.port == argument.name]
+        if mine:
+            rows = [f"{argument.name}[{load.index}]" for load in mine]
+            source = argument.name if len(mine) == argument.size > 1 else ", ".join(rows)
+            lines.append(f"{', '.join(load.name for load in mine)} = {source}")
+    return tuple(lines)
+
+
+def _function(name: str, kernel: Kernel, program: Program) -> Function:
+    listing = print_program(program, SYNTAX, scalar_names(kernel))
+    arguments = [a.name for a in kernel.arguments]
+    outputs = tuple(port.name for port in program.outputs)
+    # Outputs arrive filled with zeros.
+    stores = [s for group in listing.stores for s in group if s.text != SYNTAX.constant(0.0)]
+    return Function(
+        signature=_broken(f"def {name}(", [f"{n}: Array" for n in (*arguments, *outputs)], ") -> None:"),
+        outputs=outputs,
+        loads=_loads(listing, kernel.arguments),
+        statements=tuple(f"{a.name} = {a.text}" for a in (*listing.guard, *listing.body)),
+        stores=tuple(f"{s.port}[{', '.join(map(str, s.index))}] = {s.text}" for s in stores),
+        invalid=" | ".join(f"~({c})" for c in listing.conditions),
+    )
+
+
+def _broken(opening: str, items: Sequence[str], closing: str, *, comma: bool = False) -> str:
+    """A bracket on one line, or with one item a line where that gets too long."""
+    tail = "," if comma and len(items) == 1 else ""
+    line = f"{opening}{', '.join(items)}{tail}{closing}"
+    pad = " " * (len(opening) - len(opening.lstrip()))
+    lines = [opening, *(f"{pad}    {item}," for item in items), pad + closing]
+    return line if len(line) <= LINE else "\n".join(lines)
+
+
+def _shape(port: Port) -> str:
+    return f"(..., {', '.join(map(str, port.shape))})"
+
+
+def _doc(kernel: Kernel, program: Program, meanings: Mapping[str, str], tail: str) -> tuple[str, ...]:
+    lines = doc_lines(kernel)
+    lines = [*lines, *tail.splitlines(), "", "Arguments:"]
+    lines += [f"    {a.name}: (..., {a.size}) {argument_text(a)}" for a in kernel.arguments]
+    lines += ["", "Returns:"]
+    lines += [f"    {port.name}: {_shape(port)} {meanings[port.name]}" for port in program.outputs]
+    if program.requirements:
+        lines += ["", "NaN outside of the domain:", *(f"    {r.message}" for r in program.requirements)]
+    return tuple(lines)
+
+
+def _interface(
+    kernel: Kernel, program: Program, name: str, private: str, record: str, tail: str
+) -> Interface:
+    meanings = {o.name: storage_text(o) for o in kernel.outputs}
+    meanings |= {name: meaning for name, _, meaning in jacobian_texts(kernel)}
+    typed = [f"{a.name}: npt.ArrayLike" for a in kernel.variables]
+    typed += ["*"] if kernel.given else []
+    typed += [f"{a.name}: npt.ArrayLike" for a in kernel.given]
+    shapes = _broken("    shapes = (", [repr(port.shape) for port in program.outputs], ")", comma=True)
+    call = f'evaluate({private}, "{name}", values, shapes)'
+    return Interface(
+        signature=_broken(f"def {name}(", typed, f") -> {record or 'Array'}:"),
+        arguments=tuple(f'("{a.name}", {a.name}, {a.size})' for a in kernel.arguments),
+        result=f"{shapes.lstrip()}\n    return {f'{record}(*{call})' if record else f'{call}[0]'}",
+        record=record,
+        record_doc=f"What :func:`{name}` returns.",
+        fields=tuple((port.name, _shape(port)) for port in program.outputs),
+        doc=_doc(kernel, program, meanings, tail),
+    )
+
+
+def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
+    """The names that the templates lay out."""
+    several = len(kernel.outputs) > 1
+    record, alone = camel(kernel.name), f"{camel(kernel.name)}Outputs" if several else ""
+    jacobians = f"{kernel.name}_jacobians"
+    tail = "\nWith the Jacobians by the tangent of every variable."
+    functions = (
+        _function("_value", kernel, kernel.value),
+        _function("_jacobians", kernel, kernel.jacobians),
+    )
+    lines = [line for f in functions for line in (*f.statements, *f.stores)]
+    return {
+        "header": kernel_header(kernel, options),
+        "factor": kernel.name,
+        "uses_numpy": any("np." in line for line in lines) or any(f.invalid for f in functions),
+        "exports": sorted(public_names(kernel)),
+        "functions": functions,
+        "interfaces": (
+            _interface(kernel, kernel.value, kernel.name, "_value", alone, ""),
+            _interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians", tail),
+        ),
+    }
+
+
+TARGET = Target(
+    name="numpy",
+    printer=printed,
+    public=public_names,
+    keywords={"Python": frozenset(keyword.kwlist)},
+    reserved=words("np npt NamedTuple Array annotations evaluate values shapes invalid"),
+    files=words("support"),
+    factor_sheets=(Sheet("numpy/factor.py.j2", "{package}/_{factor}.py"),),
+    package_sheets=(
+        Sheet("numpy/package.py.j2", "{package}/__init__.py"),
+        Sheet("numpy/support.py.j2", "{package}/_support.py"),
+        Sheet("numpy/typed.j2", "{package}/py.typed"),
+    ),
+)

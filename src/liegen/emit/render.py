@@ -1,0 +1,109 @@
+"""From kernels to text: a pure function from values to ``{path: text}``."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from liegen.errors import OutputError
+from liegen.kernel import Kernel
+from liegen.program import Program
+
+from .header import package_header
+from .names import check_names
+from .target import Options, Target
+from .targets import TARGETS
+from .templates import lay_out
+
+LAYOUTS = ("row", "col")
+#: Says what a manifest is; changes when its fields do.
+FORMAT = "liegen manifest 1"
+
+
+def render(
+    kernels: Sequence[Kernel],
+    targets: Sequence[str],
+    *,
+    package: str,
+    regenerate: str,
+    layout: str = "row",
+) -> dict[str, str]:
+    """All files of a package, by relative path; the manifest ``<package>.json`` comes last.
+
+    ``targets`` are names of :data:`TARGETS`; ``regenerate`` is the command line that makes the same files.
+    ``layout`` ``"col"`` adds C functions with column-major Jacobians. Nothing is written. Raises
+    :class:`DefinitionError` for names that some language refuses, :class:`OutputError` for an unknown
+    target or layout.
+    """
+    rows = {target.name: target for target in TARGETS}
+    _known("target", targets, list(rows))
+    _known("layout", [layout], list(LAYOUTS))
+    check_names(kernels, package)
+    options = Options(package, regenerate, layout)
+    chosen = [target for target in TARGETS if target.name in targets]
+    files: dict[str, str] = {}
+    for target in chosen:
+        files |= _render_target(target, kernels, options)
+    return {**files, f"{package}.json": _manifest(kernels, [t.name for t in chosen], options, files)}
+
+
+def _known(what: str, given: Sequence[str], known: Sequence[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise OutputError(f"unknown {what} {name!r}; choose from {', '.join(known)}")
+    if not given:
+        raise OutputError(f"no {what} was chosen; choose from {', '.join(known)}")
+
+
+def _render_target(target: Target, kernels: Sequence[Kernel], options: Options) -> dict[str, str]:
+    printed = [{**target.printer(kernel, options), "package": options.package} for kernel in kernels]
+    files = {
+        sheet.path.format(package=options.package, factor=kernel.name): lay_out(sheet.template, names)
+        for kernel, names in zip(kernels, printed, strict=True)
+        for sheet in target.factor_sheets
+    }
+    shared = {
+        "package": options.package,
+        "header": package_header(kernels, options),
+        "guard_macro": f"{options.package}_H".upper(),
+        "factors": printed,
+    }
+    for sheet in target.package_sheets:
+        files[sheet.path.format(package=options.package)] = lay_out(sheet.template, shared)
+    return files
+
+
+def digest(text: str) -> str:
+    """SHA-256 of a text as it is written."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _manifest(
+    kernels: Sequence[Kernel], targets: Sequence[str], options: Options, files: Mapping[str, str]
+) -> str:
+    content = {
+        "format": FORMAT,
+        "package": options.package,
+        "options": {"targets": list(targets), "layout": options.layout, "regenerate": options.regenerate},
+        "factors": {kernel.name: _facts(kernel) for kernel in kernels},
+        "files": {path: digest(text) for path, text in files.items()},
+    }
+    return json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def _facts(kernel: Kernel) -> dict[str, Any]:
+    return {
+        "value": _counts(kernel.value),
+        "jacobians": _counts(kernel.jacobians),
+        "requirements": [r.message for r in kernel.value.requirements],
+    }
+
+
+def _counts(program: Program) -> dict[str, Any]:
+    return {
+        "operations": program.operations,
+        "operations_by_kind": program.op_counts(),
+        "program_sha256": program.digest(),
+    }

@@ -1,0 +1,80 @@
+"""How a language spells an operation, and the fewest parentheses that keep its operands apart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+#: Binding strengths shared by the languages: what needs no parentheses anywhere, down to a choice ``?:``.
+ATOM, PREFIX, PRODUCT, SUM, COMPARISON, CHOICE = 100, 90, 80, 70, 50, 0
+
+_OPPOSITE: Mapping[str, str] = {"add": "sub", "sub": "add"}
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """A prefix or infix operator. Chains within one ``family`` associate to the left."""
+
+    symbol: str
+    binding: int
+    family: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Expression:
+    """Text, how strongly its outermost operator binds, and that operator's family."""
+
+    text: str
+    binding: int = ATOM
+    family: str = ""
+
+
+@dataclass(frozen=True)
+class Syntax:
+    """How a language spells the operations of a program.
+
+    ``choice`` is the format of a select where it is no call: ``"{0} ? {1} : {2}"``.
+    """
+
+    operators: Mapping[str, Operator]
+    calls: Mapping[str, str]
+    constant: Callable[[float], str]
+    truth: Mapping[bool, str]
+    choice: str = ""
+
+    def express(self, op: str, operands: Sequence[Expression]) -> Expression:
+        """The text of one operation."""
+        if op == "select" and self.choice:
+            return Expression(self.choice.format(*(_wrap(x, x.binding > CHOICE) for x in operands)), CHOICE)
+        if op not in self.operators:
+            return Expression(f"{self.calls[op]}({', '.join(x.text for x in operands)})")
+        last = operands[-1]
+        if op in _OPPOSITE and last.family == "negative":  # a + (-c) is a - c, to the last bit
+            return self.express(_OPPOSITE[op], [operands[0], Expression(last.text[1:])])
+        operator = self.operators[op]
+        if len(operands) == 1:
+            text = operator.symbol + _wrap(last, last.binding > operator.binding)
+        else:
+            first = operands[0]
+            chain = first.binding == operator.binding and first.family == operator.family != ""
+            left = _wrap(first, chain or first.binding > operator.binding)
+            # A term or factor that starts with a minus sign is legal bare, but reads badly.
+            signed = operator.binding >= SUM and last.text.startswith("-")
+            right = _wrap(last, last.binding > operator.binding and not signed)
+            text = f"{left} {operator.symbol} {right}"
+        return Expression(text, operator.binding, operator.family)
+
+    def literal(self, value: float | bool) -> Expression:
+        """A constant, by the shortest text that reads back as the same number."""
+        text = self.truth[value] if isinstance(value, bool) else self.constant(value)
+        return Expression(text, PREFIX, "negative") if text.startswith("-") else Expression(text)
+
+
+def _wrap(operand: Expression, bare: bool) -> str:
+    return operand.text if bare else f"({operand.text})"
+
+
+def spell(nan: str, infinity: str) -> Callable[[float], str]:
+    """A printer of float constants; finite ones always have a decimal point or an exponent."""
+    special = {"nan": nan, "inf": infinity, "-inf": f"-{infinity}"}
+    return lambda value: special.get(repr(float(value)), repr(float(value)))

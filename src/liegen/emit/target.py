@@ -1,0 +1,66 @@
+"""``Target``: what one language needs to be emitted. A new language is one more row, nothing else changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from liegen.kernel import Kernel
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the caller chose: the package's name, the command that regenerates it, the Jacobians' layout."""
+
+    package: str
+    regenerate: str
+    layout: str = "row"
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A template and the path of what it makes, a pattern in ``package`` and ``factor``."""
+
+    template: str
+    path: str
+
+
+@dataclass(frozen=True)
+class Target:
+    """A language: its printer (from a kernel to the names that a template lays out) and its files.
+
+    ``public`` lists what the code of a kernel defines for its users, without a prefix that all share.
+    ``keywords`` maps a language to its keywords; ``reserved`` are names that the templates use, ``files``
+    names whose file would hide another one. No name of a factor may be one of them.
+    """
+
+    name: str
+    printer: Callable[[Kernel, Options], Mapping[str, object]]
+    public: Callable[[Kernel], tuple[str, ...]]
+    keywords: Mapping[str, frozenset[str]]
+    reserved: frozenset[str]
+    files: frozenset[str]
+    factor_sheets: tuple[Sheet, ...]
+    package_sheets: tuple[Sheet, ...]
+
+
+def words(text: str) -> frozenset[str]:
+    """A set of words."""
+    return frozenset(text.split())
+
+
+def scalar_names(kernel: Kernel) -> tuple[str, ...]:
+    """A name for every stored scalar, in order: ``x_qx`` of an SE3 ``x``, ``z_0`` of a scalar ``z``.
+
+    A name that the kernel already uses gets underscores appended.
+    """
+    used = {*(a.name for a in kernel.arguments), *(port.name for port in kernel.jacobians.outputs)}
+    names: list[str] = []
+    for argument in kernel.arguments:
+        for scalar in argument.storage if argument.size > 1 else ("0",):
+            name = f"{argument.name}_{scalar}"
+            while name in used:
+                name += "_"
+            used.add(name)
+            names.append(name)
+    return tuple(names)
