@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from liegen.algebra.linear import Matrix
 from liegen.differentiate import ORDERS, Expressions, expressions, jacobians
 from liegen.kernel import Argument, Kernel, Output, PassCount
-from liegen.manifolds import ManifoldForm
+from liegen.manifolds import ManifoldForm, Vector
 from liegen.program import Port, Program
 from liegen.program.lower import lower
 from liegen.program.passes import optimise
-from liegen.trace import Graph, formula
+from liegen.trace import Graph, formula, jacobian_formulas
 
 
 def derive(graph: Graph) -> Kernel:
@@ -27,8 +27,7 @@ def derive(graph: Graph) -> Kernel:
         for order, rule in ORDERS.items()
     ]
     order, best, rows = min(candidates, key=lambda c: c[1].operations)
-    raw = lowered(graph, values, jacobians(graph, values, ORDERS[order])).operations
-    passes = (PassCount(f"derived ({order})", raw), *(PassCount(*row) for row in rows))
+    passes = (PassCount(f"lower, {order} order", rows[0][1]), *(PassCount(*row) for row in rows[1:]))
     return Kernel(
         name=graph.name,
         doc=graph.doc,
@@ -36,13 +35,12 @@ def derive(graph: Graph) -> Kernel:
         arguments=tuple(_argument(p.name, p.manifold.form, variable=p.variable) for p in graph.parameters),
         outputs=tuple(_output(name, node.manifold.form) for name, node in graph.outputs),
         formula=formula(graph),
-        jacobian_formulas=(),
-        conventions=_conventions([p.manifold.form for p in graph.parameters]
-                                 + [node.manifold.form for _, node in graph.outputs]),
+        jacobian_formulas=jacobian_formulas(graph),
+        conventions=_conventions(graph),
         value=value,
         jacobians=best,
         passes=passes,
-    )  # fmt: skip
+    )
 
 
 def lowered(graph: Graph, values: Expressions, blocks: Mapping[tuple[str, str], Matrix]) -> Program:
@@ -67,6 +65,8 @@ def _output(name: str, form: ManifoldForm) -> Output:
     return Output(name, form.name, form.storage, form.dim)
 
 
-def _conventions(forms: Iterable[ManifoldForm]) -> tuple[str, ...]:
-    notes = {form.name: form.note for form in forms}
-    return tuple(notes.values())
+def _conventions(graph: Graph) -> tuple[str, ...]:
+    """A line for each manifold that occurs; vectors that are only results need none."""
+    results = [node.manifold for _, node in graph.outputs if not issubclass(node.manifold, Vector)]
+    forms = [m.form for m in (*(p.manifold for p in graph.parameters), *results)]
+    return tuple({form.name: form.note for form in forms}.values())

@@ -173,6 +173,17 @@ def here() -> Site:
     return Site(Path(frame.f_code.co_filename).name, frame.f_lineno)
 
 
+def raised_at(error: BaseException) -> Site:
+    """The last line outside liegen's machinery that an exception came through."""
+    site, traceback = here(), error.__traceback__
+    while traceback is not None:
+        file = traceback.tb_frame.f_code.co_filename
+        if not file.startswith(_PACKAGE) or file.startswith(_LIBRARY):
+            site = Site(Path(file).name, traceback.tb_lineno)
+        traceback = traceback.tb_next
+    return site
+
+
 def apply(operation: Operation, result: type[V], *operands: Value) -> V:
     """Compute ``operation`` on numbers, or add it to the graph when any operand is traced."""
     if any(v.traced for v in operands):

@@ -17,7 +17,7 @@ class RForm(GroupForm):
         self.name = f"R{n}"
         self.storage = tuple("xyz"[:n]) if n <= 3 else tuple(f"v{i}" for i in range(n))
         self.tangent = self.storage
-        self.note = f"R{n}: {n} numbers; tangent: the same, x.retract(d) = x + d"
+        self.note = f"R{n}: stored as it is; tangent: the same; x.retract(d) = x + d"
 
     def identity(self) -> Vector:
         return (0,) * self.dim
@@ -82,5 +82,4 @@ def direction_or_zero(v: Coords) -> Vector:
     if len(v) == 1:
         return (select(lt(v[0], 0), -1.0, select(lt(0, v[0]), 1.0, 0.0)),)
     w, n, _ = scaled_length(v)
-    positive = lt(0, n)
-    return scale(select(positive, 1 / select(positive, n, 1.0), 0.0), w)
+    return scale(1 / select(lt(0, n), n, 1.0), w)  # n is 0 only where w is

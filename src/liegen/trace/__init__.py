@@ -7,6 +7,7 @@ from .graph import Domain as Domain
 from .graph import Graph as Graph
 from .graph import Parameter as Parameter
 from .graph import topological as topological
+from .jacobian_text import jacobian_formulas as jacobian_formulas
 from .tracer import Outputs as Outputs
 from .tracer import Signature as Signature
 from .tracer import outputs as outputs
@@ -14,3 +15,4 @@ from .tracer import require as require
 from .tracer import signature as signature
 from .tracer import site_of as site_of
 from .tracer import trace as trace
+from .tracer import unknown_annotation as unknown_annotation

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from liegen.manifolds import Leaf, Node
@@ -15,28 +15,34 @@ _INFIX = {" + ": 1, " - ": 1, "-": 2, " * ": 3, " / ": 3, " @ ": 4}
 
 
 @dataclass(frozen=True)
-class _Text:
+class Text:
+    """A formula and how strongly it binds."""
+
     text: str
     strength: int  # how strongly it binds; calls and names most
 
 
 def formula(graph: Graph) -> tuple[str, ...]:
     """One line for each shared value, each output, and each stated domain."""
-    nodes = graph.nodes()
-    names, lines = named_values(graph), list[str]()
-    texts: dict[int, _Text] = {}
-    for node in nodes:
-        shown = show(node, texts)
-        name = names.get(id(node))
-        if name:
-            lines.append(f"{name} = {shown.text}")
-            shown = _Text(name, _CALL)
-        texts[id(node)] = shown
-    lines += [
-        f"{name} = {texts[id(node)].text}" for name, node in graph.outputs if names.get(id(node)) != name
-    ]
-    lines += [f'require({texts[id(d.condition)].text}, "{d.message}")' for d in graph.domain]
+    names = named_values(graph)
+    texts = texts_of(graph, names)
+
+    def used(node: Node) -> str:
+        return names.get(id(node)) or texts[id(node)].text
+
+    lines = [f"{names[id(node)]} = {texts[id(node)].text}" for node in graph.nodes() if id(node) in names]
+    lines += [f"{name} = {used(node)}" for name, node in graph.outputs if names.get(id(node)) != name]
+    lines += [f'require({used(d.condition)}, "{d.message}")' for d in graph.domain]
     return tuple(lines)
+
+
+def texts_of(graph: Graph, names: Mapping[int, str]) -> dict[int, Text]:
+    """The text of every node by its identity, in which nodes with a name are called by it."""
+    texts: dict[int, Text] = {}
+    for node in graph.nodes():
+        called = {id(n): Text(names[id(n)], _CALL) if id(n) in names else texts[id(n)] for n in node.operands}
+        texts[id(node)] = show(node, called)
+    return texts
 
 
 def named_values(graph: Graph) -> dict[int, str]:
@@ -44,7 +50,7 @@ def named_values(graph: Graph) -> dict[int, str]:
     nodes = graph.nodes()
     uses = Counter(id(n) for node in nodes for n in node.operands)
     outputs = {id(node): name for name, node in graph.outputs}
-    free = _free_names({p.name for p in graph.parameters} | {name for name, _ in graph.outputs})
+    free = free_names({p.name for p in graph.parameters} | {name for name, _ in graph.outputs})
     shared = [
         n
         for n in nodes
@@ -53,7 +59,8 @@ def named_values(graph: Graph) -> dict[int, str]:
     return {id(n): outputs.get(id(n)) or next(free) for n in shared}
 
 
-def _free_names(taken: set[str]) -> Iterator[str]:
+def free_names(taken: set[str]) -> Iterator[str]:
+    """Letters that are not taken, a to h, then a1 to h1."""
     k = 0
     while True:
         for letter in "abcdefgh":
@@ -63,17 +70,17 @@ def _free_names(taken: set[str]) -> Iterator[str]:
         k += 1
 
 
-def show(node: Node, texts: dict[int, _Text]) -> _Text:
+def show(node: Node, texts: dict[int, Text]) -> Text:
     """The text of one node from the texts of its operands."""
     pattern = node.operation.show
     if isinstance(node.operation, Leaf):
-        return _Text(pattern, 2 if pattern.startswith("-") else _CALL)
+        return Text(pattern, 2 if pattern.startswith("-") else _CALL)
     strength = next((s for sign, s in _INFIX.items() if pattern.startswith(("{0}" + sign, sign))), _CALL)
     parts = [_operand(pattern, k, strength, texts[id(n)]) for k, n in enumerate(node.operands)]
-    return _Text(pattern.format(*parts), strength)
+    return Text(pattern.format(*parts), strength)
 
 
-def _operand(pattern: str, k: int, strength: int, operand: _Text) -> str:
+def _operand(pattern: str, k: int, strength: int, operand: Text) -> str:
     """Parentheses where the place binds more strongly than the operand."""
     after = pattern.partition(f"{{{k}}}")[2]
     receiver = after.startswith((".", "["))

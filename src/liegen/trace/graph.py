@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from liegen.errors import Site
-from liegen.manifolds import Leaf, Node, Value
+from liegen.manifolds import Node, Value
 
 
 @dataclass(frozen=True, eq=False)

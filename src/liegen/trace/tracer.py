@@ -12,11 +12,14 @@ from typing import Any, get_type_hints
 
 from liegen.errors import DefinitionError, LiegenError, Site
 from liegen.manifolds import Condition, Manifold, Value, Vector
-from liegen.manifolds.node import Leaf, Node, here, node_of, parameter
+from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
 
 from .graph import Domain, Graph, Parameter, topological
 
 _domain: ContextVar[list[Domain] | None] = ContextVar("domain", default=None)
+
+_KNOWN = (*(f"R{n}" for n in range(1, 10)), "SO2", "SE2", "SO3", "SE3", "S2", "Cal3_S2", "Cal3DS2", "Cal3Bundler")
+_MANIFOLDS = f"one of liegen's (R1 to R9, {', '.join(_KNOWN[9:])}) or class R12(R, dim=12)"
 
 
 @dataclass(frozen=True)
@@ -67,16 +70,20 @@ def signature(function: Callable[..., Any]) -> tuple[Signature, ...]:
     """Read parameters and their manifolds. Raises DefinitionError that names the argument and the cure."""
     site = site_of(function)
     name = function.__name__
+    parameters = inspect.signature(function).parameters.values()
     try:
         hints = get_type_hints(function)
     except NameError as error:
-        raise DefinitionError(
-            f"{site}: {name}: unknown annotation {error.name!r}; import it: from liegen import {error.name}"
-        ) from None
+        unknown = str(error.name)
+        argument = next((p.name for p in parameters if unknown in str(p.annotation)), "return")
+        raise unknown_annotation(site, name, argument, unknown) from None
+    except Exception as error:
+        raise DefinitionError(f"{site}: {name}: an annotation cannot be read: {error}") from None
     declared: list[Signature] = []
-    for p in inspect.signature(function).parameters.values():
+    for p in parameters:
         if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD):
-            raise DefinitionError(f"{site}: {name}: *{p.name} is not possible; name every argument")
+            stars = "*" if p.kind is p.VAR_POSITIONAL else "**"
+            raise DefinitionError(f"{site}: {name}: {stars}{p.name} is not possible; name every argument")
         declared.append(
             Signature(p.name, _manifold(hints.get(p.name), f"{site}: {name}: argument {p.name!r}"),
                       p.kind is not p.KEYWORD_ONLY, p.kind is not p.KEYWORD_ONLY)
@@ -86,17 +93,22 @@ def signature(function: Callable[..., Any]) -> tuple[Signature, ...]:
     return tuple(declared)
 
 
+def unknown_annotation(site: Site, factor: str, argument: str, annotation: str) -> DefinitionError:
+    """The error for a name that does not exist."""
+    cure = f"import it: from liegen import {annotation}" if annotation in _KNOWN else f"use {_MANIFOLDS}"
+    return DefinitionError(
+        f"{site}: {factor}: argument {argument!r} has the unknown annotation {annotation!r}; {cure}"
+    )
+
+
 def _manifold(annotation: Any, what: str) -> type[Manifold]:
     if annotation is None:
         raise DefinitionError(f"{what} has no annotation; write its manifold, as in x: SE3")
-    known = isinstance(annotation, type) and issubclass(annotation, Manifold) and hasattr(annotation, "form")
-    if not known:
+    kind: Any = annotation if isinstance(annotation, type) else type(None)
+    if not (issubclass(kind, Manifold) and hasattr(kind, "form")):
         shown = getattr(annotation, "__name__", str(annotation))
-        raise DefinitionError(
-            f"{what} is annotated with {shown}, which is no manifold; use one of liegen's "
-            "(R1 to R9, SO2, SE2, SO3, SE3, S2, Cal3_S2, Cal3DS2, Cal3Bundler) or class R12(R, dim=12)"
-        )
-    return annotation
+        raise DefinitionError(f"{what} is annotated with {shown}, which is no manifold; use {_MANIFOLDS}")
+    return kind
 
 
 def site_of(function: Callable[..., Any]) -> Site:
@@ -126,11 +138,25 @@ def trace(
             result = function(*(values[s.name] for s in declared if s.positional),
                               **{s.name: values[s.name] for s in declared if not s.positional})  # fmt: skip
         except LiegenError as error:
-            raise type(error)(f"{name}: {error}") from None
+            raise type(error)(f"{name}: {_with_site(error)}") from None
+        except Exception as error:
+            raise DefinitionError(f"{name}: {raised_at(error)}: {_explained(error)}") from None
     named = _outputs(result, f"{site}: {name}", factor=factor)
     graph = Graph(name, doc, site, parameters, named, tuple(domain))
     _all_used(graph)
     return graph
+
+
+def _with_site(error: LiegenError) -> str:
+    """The message, after the user's line where it does not begin with one."""
+    text, site = str(error), raised_at(error)
+    return text if text.startswith(f"{site.file}:") else f"{site}: {text}"
+
+
+def _explained(error: Exception) -> str:
+    """What Python said, and what a residual may do instead."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())
+    return f"{text}; the values here are elements of manifolds: use their operations (compose, local, @, [k], ...)"
 
 
 @contextmanager
