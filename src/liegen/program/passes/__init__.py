@@ -1,0 +1,46 @@
+"""The passes, and the order in which they run.
+
+A pass is a function ``Program -> Program`` in a file of its own: the values stay the same (to rounding), the
+number of operations does not grow (``reciprocals`` trades divisions for products, see there). A new pass is
+one file and one line in ``PASSES``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from liegen.program.program import Program
+
+from .cse import cse
+from .dead import dead
+from .factor import factor
+from .fold import fold
+from .reciprocals import reciprocals
+from .schedule import schedule
+from .signs import signs
+
+Pass = Callable[[Program], Program]
+
+#: Run in turn, again and again until nothing changes.
+PASSES: tuple[Pass, ...] = (cse, fold, signs, factor, reciprocals)
+#: Run once at the end.
+FINAL: tuple[Pass, ...] = (dead, schedule)
+#: Rounds of ``PASSES`` at most.
+ROUNDS = 4
+
+
+def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
+    """Run all passes; return the program and a row (name, operations left) per pass that ran.
+
+    The first row is the program as it came. A pass does not run again on what it returned itself. Every
+    result is validated.
+    """
+    rows = [("lower", program.operations)]
+    returned: dict[str, Program] = {}
+    for step in (*PASSES * ROUNDS, *FINAL):
+        name = step.__name__
+        if name in returned and returned[name] == program:
+            continue
+        program = returned[name] = step(program).validate()
+        rows.append((name, program.operations))
+    return program, tuple(rows)

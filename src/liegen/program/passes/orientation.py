@@ -1,0 +1,211 @@
+"""Which values to compute, and which ones to compute negated, so that the fewest negations are left.
+
+``d[n]`` says in which sign node n is at hand without a ``neg``: 1 as it is, -1 as its negative, 0 in either.
+A difference is at hand in both, a sum in the sign of its operands, a product in the product of their signs,
+constants in both. A node with several users must settle for one: its *choice*. Operations that need one
+sign (square roots, outputs, arms that do not agree) *pay*: they demand the negative of an operand. The cost
+is the number of nodes whose negative is demanded. The search flips one choice at a time, or makes one node
+available in both signs, and updates only what depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import IntEnum
+from heapq import heappop, heappush
+from typing import NamedTuple
+
+#: Sweeps over all choices; the search stops earlier when nothing is left to gain.
+SWEEPS = 4
+
+
+class Kind(IntEnum):
+    """How the sign of a result depends on the signs of the operands."""
+
+    LEAF = 0
+    SUM = 1
+    PRODUCT = 2
+    ODD = 3
+    EVEN = 4
+    SIGNED = 5
+    COMPARISON = 6
+    SELECT = 7
+    LOGIC = 8
+    OUTPUT = 9
+
+
+class Node(NamedTuple):
+    """An operation on nodes, ``signs`` times ``args``; ``sign`` is the one in which the program had it."""
+
+    kind: Kind
+    op: str
+    value: float
+    args: tuple[int, ...]
+    signs: tuple[int, ...]
+    sign: int
+
+
+def orientations(nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> tuple[list[int], list[bool]]:
+    """Return for each node the sign, 1 or -1, in which it is best computed, and whether both are worth it.
+
+    ``outputs`` are the (node, sign) pairs that must be at hand in the end. Deterministic.
+    """
+    search = _Search(nodes, outputs)
+    search.improve()
+    return search.assigned(), search.both
+
+
+class _Search:
+    def __init__(self, nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> None:
+        self.count = len(nodes)
+        demands = sorted(set(outputs))
+        self.nodes = [*nodes, *(Node(Kind.OUTPUT, "out", 0.0, (n,), (s,), 1) for n, s in demands)]
+        total = len(self.nodes)
+        self.users: list[list[int]] = [[] for _ in range(total)]
+        for k, node in enumerate(self.nodes):
+            for a in node.args:
+                self.users[a].append(k)
+        self.constant = [node.op == "const" for node in self.nodes]
+        self.shared = [len(self.users[k]) > 1 and not self.constant[k] for k in range(total)]
+        self.choice = [node.sign for node in self.nodes]
+        for n, s in demands:
+            self.choice[n] = s
+        pinned = {self.nodes[k].args[0] for k in range(total) if self.nodes[k].op == "atan2"}
+        for k in range(total):  # the sign of a zero matters on the cut of atan2
+            if self.nodes[k].op == "atan2":
+                self.choice[self.nodes[k].args[0]] = self.nodes[k].signs[0]
+        self.candidates = [
+            k
+            for k, node in enumerate(self.nodes)
+            if self.shared[k] and node.kind not in (Kind.LOGIC, Kind.COMPARISON)
+        ]
+        self.fixed = [k in pinned or self.nodes[k].kind is Kind.LEAF for k in range(total)]
+        self.both = [False] * total
+        self.natural = [0] * total
+        self.d = [0] * total
+        self.pays: list[tuple[int, ...]] = [()] * total
+        self.demand = [0] * total
+        self.cost = 0
+        for k in range(total):
+            self.visit(k)
+
+    def sign_of(self, node: Node) -> tuple[int, tuple[int, ...]]:
+        """(sign in which the node is at hand, operands whose negative it demands)."""
+        d, kind, args = self.d, node.kind, node.args
+        if kind == Kind.PRODUCT:
+            b = args[1]
+            # a second sign of a denominator would be a second reciprocal
+            over = node.op == "div" and self.both[b]
+            return d[args[0]] * ((self.natural[b] or self.choice[b]) if over else d[b]), ()
+        if kind == Kind.SUM:
+            s, t = d[args[0]], d[args[1]] * node.signs[1]
+            return (s if s == t else 0), ()
+        if kind == Kind.LEAF:
+            return (0 if node.op == "const" else 1), ()
+        if kind == Kind.ODD:
+            return d[args[0]], ()
+        if kind == Kind.SELECT:
+            s, t = d[args[1]], d[args[2]] * node.signs[2]
+            return (0, (args[2],)) if s * t < 0 else (s or t, ())
+        if kind == Kind.COMPARISON:
+            s, t = d[args[0]] * node.signs[0], d[args[1]] * node.signs[1]
+            return 1, ((args[1],) if s * t < 0 else ())
+        if kind in (Kind.SIGNED, Kind.OUTPUT):
+            return 1, tuple([a for a, s in zip(args, node.signs, strict=True) if d[a] == -s])
+        return 1, ()
+
+    def visit(self, k: int) -> bool:
+        """Bring node k up to date; return whether its users must follow."""
+        sign, pays = self.sign_of(self.nodes[k])
+        if pays != self.pays[k]:
+            demand = self.demand
+            for a in self.pays[k]:
+                demand[a] -= 1
+                self.cost -= demand[a] == 0
+            for a in pays:
+                self.cost += demand[a] == 0
+                demand[a] += 1
+            self.pays[k] = pays
+        self.natural[k] = sign
+        if self.shared[k]:
+            sign = 0 if self.both[k] else sign or self.choice[k]
+        changed = sign != self.d[k]
+        self.d[k] = sign
+        return changed
+
+    def follow(self, k: int) -> None:
+        """Bring node k and what depends on it up to date."""
+        heap, waiting = [k], {k}
+        while heap:
+            n = heappop(heap)
+            waiting.discard(n)
+            if self.visit(n):
+                for user in self.users[n]:
+                    if user not in waiting:
+                        waiting.add(user)
+                        heappush(heap, user)
+
+    def flip(self, k: int) -> None:
+        self.choice[k] = -self.choice[k]
+        self.follow(k)
+
+    def toggle(self, k: int) -> None:
+        self.both[k] = not self.both[k]
+        self.cost += 1 if self.both[k] else -1
+        self.follow(k)
+
+    def sweep(self, move: Callable[[int], None], candidates: Sequence[int]) -> bool:
+        """Keep each move that lowers the cost, undo the others; return whether one was kept."""
+        start = self.cost
+        for k in candidates:
+            if self.cost == 0:
+                break
+            before = self.cost
+            move(k)
+            if self.cost >= before:
+                move(k)
+        return self.cost < start
+
+    def improve(self) -> None:
+        """Flip from the outputs to the inputs (the other way round ended higher), then try both signs."""
+        for _ in range(SWEEPS):
+            free = [k for k in reversed(self.candidates) if not self.fixed[k] and not self.natural[k]]
+            if not self.sweep(self.flip, free) and not self.sweep(self.toggle, self.candidates):
+                return
+
+    def assigned(self) -> list[int]:
+        """The sign of every node, free ones set by the one user that they have."""
+        final = [d or choice for d, choice in zip(self.d, self.choice, strict=True)]
+        for k, both in enumerate(self.both):
+            if both:
+                final[k] = self.natural[k] or self.choice[k]
+        for k in range(len(self.nodes) - 1, -1, -1):
+            node = self.nodes[k]
+            free = [self.d[a] == 0 and not self.shared[a] and not self.constant[a] for a in node.args]
+            if any(free):
+                fixed = [not self.constant[a] and not free_ for a, free_ in zip(node.args, free, strict=True)]
+                _assign(node, final, free, fixed, final[k])
+        return final[: self.count]
+
+
+def _assign(node: Node, final: list[int], free: list[bool], fixed: list[bool], want: int) -> None:
+    """Set the signs of the free operands so that ``node`` costs nothing in the sign ``want``."""
+    args, signs = node.args, node.signs
+    held = [final[a] * s for a, s, stuck in zip(args, signs, fixed, strict=True) if stuck]
+    if node.kind is Kind.PRODUCT:
+        # one free operand takes what is missing, a second one stays as it is
+        first = args[free.index(True)]
+        for a, open_ in zip(args, free, strict=True):
+            if open_:
+                final[a] = 1
+        final[first] = want * held[0] if held else want
+        return
+    if node.kind is Kind.COMPARISON:
+        want = held[0] if held else 1
+    elif node.kind in (Kind.SIGNED, Kind.OUTPUT):
+        want = 1
+    elif node.kind not in (Kind.SUM, Kind.SELECT, Kind.ODD):
+        return
+    for a, s, open_ in zip(args, signs, free, strict=True):
+        if open_:
+            final[a] = want * s

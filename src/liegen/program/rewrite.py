@@ -1,0 +1,69 @@
+"""What the lowering and the passes share: a list of instructions under construction, and rebuilt programs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from .program import COMMUTATIVE, Instruction, Program, Requirement
+
+
+class Builder:
+    """Instructions under construction: ``emit`` appends, ``share`` first looks for an equal one."""
+
+    def __init__(self) -> None:
+        self.code: list[Instruction] = []
+        self._index: dict[tuple[str, tuple[int, ...], float], int] = {}
+
+    def emit(self, op: str, args: tuple[int, ...] = (), value: float = 0.0) -> int:
+        """Append an instruction, return its index."""
+        self.code.append(Instruction(op, args, value))
+        return len(self.code) - 1
+
+    def share(self, op: str, args: tuple[int, ...] = (), value: float = 0.0) -> int:
+        """Return the instruction equal to this one (commutative operands in any order), appended if new."""
+        if op in COMMUTATIVE and args[0] > args[1]:
+            args = (args[1], args[0])
+        key = (op, args, value)
+        found = self._index.get(key)
+        if found is None:
+            found = self._index[key] = self.emit(op, args, value)
+        return found
+
+    def const(self, value: float) -> int:
+        """Return the constant, appended if new; -0.0 is 0.0."""
+        return self.share("const", (), value + 0.0)
+
+    def value(self, index: int) -> float | None:
+        """Return the number of a constant, None for any other instruction."""
+        ins = self.code[index]
+        return ins.value if ins.op == "const" else None
+
+
+def rebuilt(program: Program, code: Sequence[Instruction], place: Sequence[int]) -> Program:
+    """Return ``program`` on new code; ``place[i]`` is where the value of the old instruction i now is."""
+    return replace(
+        program,
+        code=tuple(code),
+        results=tuple(tuple([place[i] for i in indices]) for indices in program.results),
+        requirements=tuple(Requirement(place[r.condition], r.message) for r in program.requirements),
+    )
+
+
+def roots(program: Program) -> list[int]:
+    """Instructions that must be kept: outputs in order, then requirements."""
+    return [
+        *(i for indices in program.results for i in indices),
+        *(r.condition for r in program.requirements),
+    ]
+
+
+def use_counts(program: Program) -> list[int]:
+    """How often each instruction is used by another one, an output or a requirement."""
+    uses = [0] * len(program.code)
+    for ins in program.code:
+        for a in ins.args:
+            uses[a] += 1
+    for i in roots(program):
+        uses[i] += 1
+    return uses
