@@ -10,9 +10,9 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "trace", "differentiate", "program", "kernel", "derive",
-    "define", "samples", "library", "emit", "sources", "explain", "verify", "bench", "cli",
+    "define", "samples", "library", "sources", "emit", "native", "verify", "bench", "explain", "cli",
 )  # fmt: skip
-#: The decorators derive at first use, so define sits beside derive; the lazy package root names everything.
+#: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")
 
 

@@ -2,5 +2,6 @@
 
 from __future__ import annotations
 
+from .casadi_c import FLAGS as FLAGS
 from .casadi_c import compare as compare
 from .timing import Row as Row
