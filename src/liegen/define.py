@@ -5,15 +5,15 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar, overload
 
 import numpy as np
 
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value, Vector
-from liegen.manifolds.node import here
-from liegen.trace import Graph, Outputs, Signature, signature, site_of, trace
+from liegen.manifolds.node import called, here
+from liegen.trace import Graph, Outputs, Signature, signature, trace
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -60,8 +60,8 @@ class Function(Generic[P, T]):
         values = self._bound(args, kwargs)
         if any(v.traced for v in values.values()):
             complete = {s.name: s.bound if s.bound is not None else values[s.name] for s in self.declared}
-            return self.function(*(complete[s.name] for s in self.declared if s.positional),
-                                 **{s.name: complete[s.name] for s in self.declared if not s.positional})  # fmt: skip
+            named = {s.name: complete[s.name] for s in self.declared if not s.positional}
+            return self.function(*(complete[s.name] for s in self.declared if s.positional), **named)
         results = self.kernel.value.evaluate({name: v.coords for name, v in values.items()})
         typed = {name: node.manifold.holding(results[name]) for name, node in self.graph.outputs}
         single: Any = next(iter(typed.values())) if len(typed) == 1 else Outputs(typed)  # type: ignore[arg-type]
@@ -93,7 +93,8 @@ class Function(Generic[P, T]):
             return s.manifold.from_storage(value)
         if value.form.name != s.manifold.form.name:
             raise DefinitionError(
-                f"{here()}: {self.name}: argument {s.name!r} must be {s.manifold.form.name}, got {value.form.name}"
+                f"{here()}: {self.name}: argument {s.name!r} must be {s.manifold.form.name}, "
+                f"got {called(value)}"
             )
         return value
 
@@ -172,11 +173,13 @@ def function(function: Any = None, /, *, sample: Sampler | None = None) -> Any:
     return _decorated(function, sample, is_factor=False)
 
 
-def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool) -> Any:
+def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool) -> Callable[..., Any]:
     if function is None:
-        return lambda f: _decorated(f, sample, is_factor=is_factor)  # pyright: ignore[reportUnknownLambdaType]
+        return partial(_decorated, sample=sample, is_factor=is_factor)
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     doc = inspect.getdoc(function) or ""
-    site_of(function)
-    return Function(function, signature(function), function.__name__, doc, is_factor, sample)
+    made: Function[..., Any] = Function(
+        function, signature(function), function.__name__, doc, is_factor, sample
+    )
+    return made

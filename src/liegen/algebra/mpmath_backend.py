@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
-
-import mpmath
 
 from .base import Algebra
 
-mp: Any = mpmath.mp
+mp: Any = importlib.import_module("mpmath").mp  # ships no type information
 
 
 def _select(condition: Any, a: Any, b: Any) -> Any:
     return a if condition else b
+
+
+def _lt(a: Any, b: Any) -> bool:
+    return bool(a < b)
+
+
+def _le(a: Any, b: Any) -> bool:
+    return bool(a <= b)
+
+
+def _and(a: Any, b: Any) -> bool:
+    return bool(a and b)
+
+
+def _or(a: Any, b: Any) -> bool:
+    return bool(a or b)
+
+
+def _not(a: Any) -> bool:
+    return not a
 
 
 def _guarded(name: str) -> Any:
@@ -24,7 +43,7 @@ def _guarded(name: str) -> Any:
             value = function(x)
         except (ValueError, ZeroDivisionError):
             return mp.nan
-        return value if isinstance(value, mpmath.mpf) else mp.nan
+        return value if isinstance(value, mp.mpf) else mp.nan
 
     return real
 
@@ -40,11 +59,11 @@ BACKEND = Algebra(
         },
         "abs": abs,
         "atan2": mp.atan2,
-        "lt": lambda a, b: bool(a < b),
-        "le": lambda a, b: bool(a <= b),
-        "and": lambda a, b: bool(a and b),
-        "or": lambda a, b: bool(a or b),
-        "not": lambda a: not a,
+        "lt": _lt,
+        "le": _le,
+        "and": _and,
+        "or": _or,
+        "not": _not,
         "select": _select,
     },
 )

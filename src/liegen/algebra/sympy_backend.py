@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import Any
-
-import sympy
 
 from .base import Algebra
 
-sp: Any = sympy
+sp: Any = importlib.import_module("sympy")  # ships no type information
+
+
+def _select(condition: Any, a: Any, b: Any) -> Any:
+    return sp.Piecewise((a, condition), (b, True))
+
 
 BACKEND = Algebra(
     name="sympy",
@@ -18,6 +22,6 @@ BACKEND = Algebra(
         "sqrt": sp.sqrt, "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "asin": sp.asin, "acos": sp.acos,
         "atan": sp.atan, "exp": sp.exp, "log": sp.log, "abs": sp.Abs, "atan2": sp.atan2,
         "lt": sp.Lt, "le": sp.Le, "and": sp.And, "or": sp.Or, "not": sp.Not,
-        "select": lambda c, a, b: sp.Piecewise((a, c), (b, True)),
+        "select": _select,
     },
 )  # fmt: skip

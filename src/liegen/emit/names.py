@@ -13,6 +13,8 @@ from .targets import TARGETS
 
 #: Names that generated code, or whoever imports it, gives a meaning of its own.
 RESERVED = frozenset({"res", "out", "np"}).union(*(target.reserved for target in TARGETS))
+#: How the output of a factor, and the single output of a function, is called: reserved for just that.
+UNNAMED = frozenset({"res", "out"})
 FILES = frozenset[str]().union(*(target.files for target in TARGETS))
 #: A field of a named tuple must not hide one of its methods.
 TUPLE_METHODS = frozenset({"count", "index"})
@@ -84,7 +86,7 @@ def _check_kernel(kernel: Kernel) -> None:
         seen.add(name)
     seen = set()
     for name in outputs:
-        complaint = _complaint(name) or ("" if name == "res" else _reserved(name)) or _clash(name, seen, ())
+        complaint = _complaint(name) or ("" if name in UNNAMED else _reserved(name)) or _clash(name, seen, ())
         if not complaint and name in TUPLE_METHODS:
             complaint = "is a method of every named tuple"
         _refuse(f"{where}: output {name!r}", name, complaint)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
@@ -17,6 +18,14 @@ from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
 Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
 Blocks = tuple[Chain | None, ...]
+#: The coordinates of a result from those of its operands.
+Compute = Callable[[Any], Vector] | Callable[[Any, Any], Vector] | Callable[[Any, Any, Any], Vector]
+#: The blocks from the result and the operands.
+Rule = (
+    Callable[[Any, Any], Blocks]
+    | Callable[[Any, Any, Any], Blocks]
+    | Callable[[Any, Any, Any, Any], Blocks]
+)
 
 
 class ManifoldForm(ABC):
@@ -49,11 +58,11 @@ class ManifoldForm(ABC):
         """d local(x, y)/dy at y = x, dim x size; None: by automatic differentiation of ``local``."""
         return None
 
-    def retract_blocks(self) -> Callable[..., Blocks] | None:
+    def retract_blocks(self) -> Rule | None:
         """Rule (result, x, d) -> blocks of ``retract``; None: automatic differentiation through the storage."""
         return None
 
-    def local_blocks(self) -> Callable[..., Blocks] | None:
+    def local_blocks(self) -> Rule | None:
         """Rule (result, x, y) -> blocks of ``local``; None: automatic differentiation through the storage."""
         return None
 
@@ -121,34 +130,34 @@ class GroupForm(ManifoldForm):
         """Return log(x^-1 y)."""
         return self.log(self.between(x, y))
 
-    def retract_blocks(self) -> Callable[..., Blocks]:
+    def retract_blocks(self) -> Rule:
         """d/dx = Ad(exp(d))^-1, d/dd = Jr(d) (micro Lie, eq. 82-83)."""
         return lambda _, _x, d: (self.adjoint_inverse(self.exp(d)), (self.Jr(d),))
 
-    def local_blocks(self) -> Callable[..., Blocks]:
+    def local_blocks(self) -> Rule:
         """d/dy = Jr^-1(r), d/dx = -Jl^-1(r) (micro Lie, eq. 79, 84)."""
         return lambda r, _x, _y: (
             (_negative(self.Jl_inv(r, principal=True)),),
             (self.Jr_inv(r, principal=True),),
         )
 
-    def compose_blocks(self) -> Callable[..., Blocks]:
+    def compose_blocks(self) -> Rule:
         """d/da = Ad(b^-1), d/db = I (micro Lie, eq. 63-64)."""
         return lambda _, _a, b: (self.adjoint_inverse(b), (eye(self.dim),))
 
-    def inverse_blocks(self) -> Callable[..., Blocks]:
+    def inverse_blocks(self) -> Rule:
         """d/da = -Ad(a) (micro Lie, eq. 62)."""
         return lambda _, a: (_negated(self.adjoint(a)),)
 
-    def between_blocks(self) -> Callable[..., Blocks]:
+    def between_blocks(self) -> Rule:
         """d/da = -Ad(c^-1) with c = a^-1 b, d/db = I (micro Lie, eq. 81)."""
         return lambda c, _a, _b: (_negated(self.adjoint_inverse(c)), (eye(self.dim),))
 
-    def exp_blocks(self) -> Callable[..., Blocks]:
+    def exp_blocks(self) -> Rule:
         """d/dd = Jr(d)."""
         return lambda _, d: ((self.Jr(d),),)
 
-    def log_blocks(self) -> Callable[..., Blocks]:
+    def log_blocks(self) -> Rule:
         """d/da = Jr^-1(log a) (micro Lie, eq. 79)."""
         return lambda r, _a: ((self.Jr_inv(r, principal=True),),)
 

@@ -14,7 +14,7 @@ from liegen.algebra.linear import Matrix
 from liegen.errors import DefinitionError
 
 from .form import GroupForm, ManifoldForm
-from .node import Operation, Value, apply, here
+from .node import Operation, Value, apply, called, here
 
 if TYPE_CHECKING:
     from .vector import Vector, VectorLike
@@ -39,8 +39,8 @@ def same_manifold(operation: str, x: Value, y: Value) -> None:
     """Raise DefinitionError unless both values are of one manifold."""
     if x.form.name != y.form.name:
         raise DefinitionError(
-            f"{here()}: {operation} needs two elements of one manifold, got {x.form.name} and {y.form.name}; "
-            f"give it two {x.form.name}"
+            f"{here()}: {operation} needs two elements of one manifold, got {called(x)} and {called(y)}; "
+            f"give it two of {x.form.name}"
         )
 
 

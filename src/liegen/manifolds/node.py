@@ -7,22 +7,22 @@ a factor that is being traced (then it adds a node). ``apply`` is the only place
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, NoReturn, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.errors import DefinitionError, Site
 
-from .form import Blocks, ManifoldForm
+from .form import Compute, ManifoldForm, Rule
 
 _PACKAGE = str(Path(__file__).resolve().parent.parent)
 _LIBRARY = str(Path(_PACKAGE) / "library")
+_NUMPY = str(Path(np.__file__).parent)
 V = TypeVar("V", bound="Value")
 
 
@@ -30,15 +30,16 @@ V = TypeVar("V", bound="Value")
 class Operation:
     """One operation of the language.
 
-    ``value(*coords)`` computes the result's coordinates on scalars of any backend. ``blocks(result, *coords)``
-    gives the tangent-space Jacobian by each operand; None stands for automatic differentiation through the
-    storage. ``show`` is a format string for the operands. ``parameters`` are the constants that it carries.
+    ``value(*coords)`` computes the result's coordinates on scalars of any backend.
+    ``blocks(result, *coords)`` gives the tangent-space Jacobian by each operand; None stands for automatic
+    differentiation through the storage. ``show`` is a format string for the operands. ``parameters`` are the
+    constants that it carries.
     """
 
     name: str
     result: type[Value]
-    value: Callable[..., Coordinates]
-    blocks: Callable[..., Blocks] | None
+    value: Compute
+    blocks: Rule | None
     show: str
     parameters: tuple[Any, ...] = ()
 
@@ -107,13 +108,14 @@ class Value:
     def coords(self) -> Coordinates:
         """The stored scalars. Raises DefinitionError on a traced value."""
         if self._node is not None:
-            refuse(self, "read the numbers of")
+            refuse(self, "read the numbers of {}")
         return self._coords
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[np.float64]:
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> object:
+        # an array; were it declared so, type checkers would take `M @ v` for NumPy's product
         if self._node is not None:
-            refuse(self, "turn into a NumPy array")
-        parts = np.broadcast_arrays(*self._coords) if self._coords else []
+            refuse(self, "turn {} into a NumPy array")
+        parts = np.broadcast_arrays(*self._coords)
         return np.stack(parts, axis=-1).astype(dtype or np.float64)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
@@ -121,27 +123,28 @@ class Value:
                      "divide": "__rtruediv__", "matmul": "__rmatmul__"}  # fmt: skip
         name = reflected.get(ufunc.__name__)
         if method == "__call__" and name and len(inputs) == 2 and inputs[1] is self and not kwargs:
-            result = getattr(type(self), name, lambda *_: NotImplemented)(self, inputs[0])
+            reflected_operator = getattr(type(self), name, None)
+            result = reflected_operator(self, inputs[0]) if reflected_operator else NotImplemented
             if result is not NotImplemented:
                 return result
         raise DefinitionError(
-            f"{here()}: np.{ufunc.__name__} does not take a {type(self).__name__}; "
+            f"{here()}: np.{ufunc.__name__} does not take {called(self)}; "
             "write the formula with liegen's functions (liegen.sin, norm, dot, stack, ...) and operators"
         )
 
     def __bool__(self) -> bool:
         if self._node is None and len(self._coords) == 1:
             return bool(self._coords[0])
-        refuse(self, "branch on")
+        refuse(self, "branch on {} (if, and, or and not do)")
 
     def __float__(self) -> float:
         if self._node is None and len(self._coords) == 1:
             return float(self._coords[0])
-        refuse(self, "turn into a float (math.sin and float() do)")
+        refuse(self, "turn {} into a float (float() and the functions of math do)")
 
     def __eq__(self, other: object) -> bool:
         if self._node is not None or (isinstance(other, Value) and other.traced):
-            refuse(self, "compare with ==")
+            refuse(self, "compare {} with ==")
         same = type(self) is type(other) and isinstance(other, Value)
         return same and bool(np.array_equal(np.asarray(self), np.asarray(other)))
 
@@ -157,18 +160,28 @@ class Value:
 def refuse(value: Value, what: str) -> NoReturn:
     """Raise the error for Python code that needs the number of a traced value."""
     raise DefinitionError(
-        f"{here()}: cannot {what} a {type(value).__name__} while a factor is traced: it has no number yet. "
+        f"{here()}: cannot {what.format(called(value))}: while a factor is traced it has no number. "
         "Use liegen.where, minimum, maximum, abs and liegen's own functions instead of if, math and numpy"
     )
+
+
+def called(value: Value) -> str:
+    """How a message speaks of a value: ``x (SE3)`` where its formula is short, else its manifold."""
+    node = value._node  # pyright: ignore[reportPrivateUsage]
+    if node is None or any(n.operands for n in node.operands):
+        return value.form.name
+    return f"{node.operation.show.format(*(n.operation.show for n in node.operands))} ({value.form.name})"
+
+
+def _machinery(file: str) -> bool:
+    """Whether a file is liegen's or NumPy's own, so that no user looks there for a mistake."""
+    return file.startswith((_PACKAGE, _NUMPY)) and not file.startswith(_LIBRARY)
 
 
 def here() -> Site:
     """The nearest line outside liegen's machinery: the user's, or the library's."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
-    while frame.f_back is not None:
-        file = frame.f_code.co_filename
-        if not file.startswith(_PACKAGE) or file.startswith(_LIBRARY):
-            break
+    while frame.f_back is not None and _machinery(frame.f_code.co_filename):
         frame = frame.f_back
     return Site(Path(frame.f_code.co_filename).name, frame.f_lineno)
 
@@ -178,7 +191,7 @@ def raised_at(error: BaseException) -> Site:
     site, traceback = here(), error.__traceback__
     while traceback is not None:
         file = traceback.tb_frame.f_code.co_filename
-        if not file.startswith(_PACKAGE) or file.startswith(_LIBRARY):
+        if not _machinery(file):
             site = Site(Path(file).name, traceback.tb_lineno)
         traceback = traceback.tb_next
     return site

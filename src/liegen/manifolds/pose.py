@@ -9,7 +9,7 @@ from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords, PoseForm
 from .group import Group, Manifold, tangent_class
-from .node import Operation, apply, here
+from .node import Operation, Value, apply, called, here
 from .rotation import Rotation
 from .vector import R1, Vector, VectorLike, as_vector, norm
 
@@ -29,10 +29,11 @@ class Pose(Group, Generic[Q, P, B]):
     def __new__(cls, rotation: Q, translation: VectorLike) -> Self:
         """From a rotation and a translation [m]."""
         form = cls.form
-        if not isinstance(rotation, cls.rotation_class):
+        value: Any = rotation
+        if not isinstance(value, cls.rotation_class):
             raise DefinitionError(
                 f"{here()}: {cls.__name__}(rotation, translation) needs a {cls.rotation_class.__name__}, "
-                f"got a {type(rotation).__name__}"
+                f"got {called(value) if isinstance(value, Value) else type(value).__name__}"
             )
         t = as_vector(translation, form.rotation.space, f"{cls.__name__}(rotation, translation)")
 
@@ -50,7 +51,7 @@ class Pose(Group, Generic[Q, P, B]):
         form = self.form
         block = beside(*form.in_order(eye(form.rotation.dim), zeros(form.rotation.dim, form.rotation.space)))
         operation = Operation(
-            "rotation", self.rotation_class, form.rotation_of, lambda *_: ((block,),), "{0}.rotation"
+            "rotation", self.rotation_class, form.rotation_of, lambda _r, _x: ((block,),), "{0}.rotation"
         )
         return apply(operation, self.rotation_class, self)
 
@@ -133,4 +134,6 @@ class Pose(Group, Generic[Q, P, B]):
     @overload
     def __matmul__(self, other: VectorLike) -> P: ...
     def __matmul__(self, other: Any) -> Any:
-        return self.compose(other) if isinstance(other, Pose) else self.transform_from(other)
+        is_pose = isinstance(other, Group) and not isinstance(other, Vector)
+        value: Any = other
+        return self.compose(value) if is_pose else self.transform_from(value)

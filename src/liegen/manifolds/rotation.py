@@ -63,8 +63,6 @@ class Rotation(Group, Generic[P]):
     @overload
     def __matmul__(self, other: VectorLike) -> P: ...
     def __matmul__(self, other: Any) -> Any:
-        return (
-            self.compose(other)
-            if isinstance(other, Group) and not isinstance(other, Vector)
-            else self.rotate(other)
-        )
+        is_rotation = isinstance(other, Group) and not isinstance(other, Vector)
+        value: Any = other
+        return self.compose(value) if is_rotation else self.rotate(value)

@@ -6,14 +6,13 @@ b1 = (n x a) / |n x a| and b2 = n x b1, as GTSAM's Unit3. The chart is the expon
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 from liegen.algebra import Scalar, algebra_of, atan2, fabs, le, lt, select, sqrt
 from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, matmul, matvec, scale, transpose
 from liegen.coefficients import stumpff
 
-from .form import Blocks, Coords, ManifoldForm
+from .form import Blocks, Coords, ManifoldForm, Rule
 from .rn_form import direction_or_zero, length
 
 
@@ -91,11 +90,11 @@ class S2Form(ManifoldForm):
         """The basis: ``local`` has a kink in its formula, not in its value, where both directions agree."""
         return basis(x)
 
-    def local_blocks(self) -> Callable[..., Blocks]:
+    def local_blocks(self) -> Rule:
         """By y: moves along and across; by x: the same with the turn of the basis at x."""
         return _local_blocks
 
-    def direction_blocks(self) -> Callable[..., Blocks]:
+    def direction_blocks(self) -> Rule:
         """d(v/|v|)/dv = B / |v| in the basis at the result."""
         return lambda n, v: (_direction_block(n, v),)
 

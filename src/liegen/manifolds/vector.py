@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, ClassVar, Self, SupportsIndex, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from liegen.algebra import Scalar, call
-from liegen.algebra.linear import Matrix, column, diagonal, eye, matvec
-from liegen.algebra.linear import Vector as Coordinates
+from liegen.algebra import call
 from liegen.errors import DefinitionError
 
 from .condition import Condition
-from .form import Blocks
 from .group import Group
-from .node import Operation, Value, apply, here
+from .node import Operation, Value, apply, called, here
 from .rn_form import RForm, direction_or_zero, length
+from .vector_operations import (
+    ARITHMETIC,
+    Elementwise,
+    Partials,
+    comparison,
+    constant_product,
+    elementwise,
+    join,
+    take,
+)
 
 V = TypeVar("V", bound="Vector")
 
@@ -70,7 +77,7 @@ class Vector(Group):
         return _binary("div", other, self)
 
     def __neg__(self) -> Self:
-        return _elementwise("neg", "-{0}", self, lambda a: -a, lambda _, a: (-1,))
+        return _elementwise("neg", "-{0}", (self,), lambda a: -a, lambda _, _a: (-1,))
 
     def __pos__(self) -> Self:
         return self
@@ -81,7 +88,8 @@ class Vector(Group):
     def __pow__(self, exponent: int) -> Self:
         if not isinstance(exponent, int) or exponent < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             raise DefinitionError(
-                f"{here()}: ** takes a whole number that is not negative; use sqrt, exp and log for other powers"
+                f"{here()}: ** takes a whole number that is not negative; "
+                "use sqrt, exp and log for other powers"
             )
         if exponent == 0:
             return self * 0 + 1
@@ -110,13 +118,22 @@ class Vector(Group):
     @overload
     def __getitem__(self, index: slice) -> Vector: ...
     def __getitem__(self, index: SupportsIndex | slice) -> Vector:
-        positions = range(self.form.dim)[index]  # raises IndexError, as a list does
+        try:
+            positions = range(self.form.dim)[index]
+        except IndexError:
+            raise DefinitionError(
+                f"{here()}: {called(self)} has the entries 0 to {len(self) - 1}, there is no [{index}]"
+            ) from None
         picked = list(positions) if isinstance(positions, range) else [positions]
         if not picked:
             raise DefinitionError(
-                f"{here()}: the slice {index} of a vector with {len(self)} entries is empty"
+                f"{here()}: an empty slice: {called(self)} has the entries 0 to {len(self) - 1}"
             )
-        return _take(self, picked, str(positions) if isinstance(positions, int) else _slice_text(picked))
+        cls = vector_class(len(picked))
+        return apply(take(cls, len(self), picked, single=isinstance(positions, int)), cls, self)
+
+    def __iter__(self) -> Iterator[R1]:
+        return (self[k] for k in range(len(self)))
 
     def __len__(self) -> int:
         return self.form.dim
@@ -223,7 +240,7 @@ def as_vector(v: Any, dim: int | None = None, where: str = "this operation") -> 
     """
     if not isinstance(v, Vector):
         if isinstance(v, Value):
-            raise DefinitionError(f"{here()}: {where} needs a vector, got a {type(v).__name__}")
+            raise DefinitionError(f"{here()}: {where} needs a vector, got {called(v)}")
         try:
             numbers = np.atleast_1d(np.asarray(v, dtype=np.float64))
         except (TypeError, ValueError):
@@ -235,113 +252,60 @@ def as_vector(v: Any, dim: int | None = None, where: str = "this operation") -> 
         v = vector_class(numbers.size).from_storage(numbers)
     if dim is not None and len(v) != dim:
         raise DefinitionError(
-            f"{here()}: {where} needs a vector with {dim} entries, got {len(v)}; take a slice or stack() to fit"
+            f"{here()}: {where} needs a vector with {dim} entries, got {called(v)} with {len(v)}; "
+            "take a slice or stack() to fit"
         )
     return v
 
 
-Elementwise = Callable[..., Scalar]
-#: Value, its partial derivatives (result, a, b) -> (by a, by b), and how it is shown.
-_ARITHMETIC: dict[str, tuple[Elementwise, Callable[..., tuple[Scalar, ...]], str]] = {
-    "add": (lambda a, b: a + b, lambda _r, _a, _b: (1, 1), "{0} + {1}"),
-    "sub": (lambda a, b: a - b, lambda _r, _a, _b: (1, -1), "{0} - {1}"),
-    "mul": (lambda a, b: a * b, lambda _r, a, b: (b, a), "{0} * {1}"),
-    "div": (lambda a, b: a / b, lambda r, _a, b: (1 / b, -r / b), "{0} / {1}"),
-}
-
-
 def _binary(name: str, a: Any, b: Any) -> Any:
-    f, partials, show = _ARITHMETIC[name]
-    return _elementwise(name, show, a, b, f, partials)
+    f, partials, show = ARITHMETIC[name]
+    return _elementwise(name, show, (a, b), f, partials)
 
 
-def _elementwise(name: str, show: str, *args: Any) -> Any:
-    """An elementwise operation; the last two arguments are its function and its partials (or None)."""
-    *operands, f, partials = args
+def _elementwise(
+    name: str, show: str, operands: Sequence[Any], f: Elementwise, partials: Partials | None
+) -> Any:
+    """An elementwise operation; without ``partials`` CasADi differentiates it."""
     vectors = [as_vector(v, where=name) for v in operands]
     n = max(len(v) for v in vectors)
     if any(len(v) not in (1, n) for v in vectors):
         raise DefinitionError(
-            f"{here()}: {name} of vectors with {' and '.join(str(len(v)) for v in vectors)} entries; "
+            f"{here()}: {name} of {' and '.join(map(called, vectors))}; "
             "both need the same dimension, or one a scalar"
         )
 
-    def entries(coords: Sequence[Coordinates]) -> list[tuple[Scalar, ...]]:
-        return [tuple(c[k if len(c) > 1 else 0] for c in coords) for k in range(n)]
-
-    def value(*coords: Coordinates) -> Coordinates:
-        return tuple(f(*entry) for entry in entries(coords))
-
-    def blocks(result: Coordinates, *coords: Coordinates) -> Blocks:
-        slopes = [partials(r, *entry) for r, entry in zip(result, entries(coords), strict=True)]
-        by_operand = [tuple(s[k] for s in slopes) for k in range(len(coords))]
-        return tuple(
-            (column(d) if len(c) == 1 else diagonal(d),) for c, d in zip(coords, by_operand, strict=True)
-        )
-
     cls = vector_class(n)
-    return apply(Operation(name, cls, value, blocks if partials else None, show), cls, *vectors)
+    return apply(elementwise(cls, n, name, show, f, partials), cls, *vectors)
 
 
 def unary(name: str, v: Vector | float) -> Any:
     """A scalar function of the backends, entry by entry, differentiated by CasADi."""
-    return _elementwise(name, name + "({0})", v, lambda a: call(name, a), None)
+    return _elementwise(name, name + "({0})", (v,), lambda a: call(name, a), None)
 
 
-def binary(name: str, show: str, a: Any, b: Any, f: Elementwise, partials: Any = None) -> Any:
+def binary(name: str, show: str, a: Any, b: Any, f: Elementwise, partials: Partials | None = None) -> Any:
     """An elementwise function of two vectors."""
-    return _elementwise(name, show, a, b, f, partials)
+    return _elementwise(name, show, (a, b), f, partials)
 
 
 def _compare(name: str, show: str, a: Any, b: Any) -> Condition:
     vectors = as_vector(a, 1, "a comparison"), as_vector(b, 1, "a comparison")
-
-    def value(x: Coordinates, y: Coordinates) -> Coordinates:
-        return (call(name, x[0], y[0]),)
-
-    return apply(Operation(name, Condition, value, None, show), Condition, *vectors)
-
-
-def _take(v: Vector, positions: list[int], text: str) -> Vector:
-    rows = eye(len(v))
-    cls = vector_class(len(positions))
-    operation = Operation(
-        "take",
-        cls,
-        lambda a: tuple(a[k] for k in positions),
-        lambda _, _a: ((tuple(rows[k] for k in positions),),),
-        f"{{0}}[{text}]",
-        tuple(positions),
-    )
-    return apply(operation, cls, v)
-
-
-def _slice_text(positions: list[int]) -> str:
-    step = positions[1] - positions[0] if len(positions) > 1 else 1
-    ends = f"{positions[0]}:{positions[-1] + 1}"
-    return ends if step == 1 else f"{', '.join(map(str, positions))}"
+    return apply(comparison(Condition, name, show), Condition, *vectors)
 
 
 def _constant_product(matrix: Any, v: Vector) -> Vector:
     numbers = np.asarray(matrix, dtype=np.float64)
     if numbers.ndim != 2 or numbers.shape[1] != len(v):
         raise DefinitionError(
-            f"{here()}: a matrix of shape {numbers.shape} cannot multiply a vector with {len(v)} entries"
+            f"{here()}: a matrix of shape {numbers.shape} cannot multiply {called(v)}; "
+            f"it needs {len(v)} columns"
         )
-    rows: Matrix = tuple(tuple(_plain(x) for x in row) for row in numbers.tolist())
-    cls = vector_class(len(rows))
-    operation = Operation(
-        "matmul", cls, lambda a: matvec(rows, a), lambda _, _a: ((rows,),), "M @ {0}", (numbers.tolist(),)
-    )
-    return apply(operation, cls, v)
+    cls = vector_class(len(numbers))
+    return apply(constant_product(cls, numbers.tolist()), cls, v)
 
 
-def _plain(x: float) -> float | int:
-    """Zeros and ones of a constant matrix are structure."""
-    return int(x) if x in (0.0, 1.0, -1.0) else x
-
-
-def stack(*parts: Any) -> Vector:
+def stack(*parts: VectorLike) -> Vector:
     """Join vectors, scalars and numbers to one vector."""
     vectors = [as_vector(p, where="stack") for p in parts]
     if not vectors:
@@ -350,18 +314,10 @@ def stack(*parts: Any) -> Vector:
         return vectors[0]
     sizes = [len(v) for v in vectors]
     cls = vector_class(sum(sizes))
-    starts = [sum(sizes[:k]) for k in range(len(sizes))]
-    columns = eye(sum(sizes))
-
-    def blocks(*_: Coordinates) -> Blocks:
-        return tuple((tuple(row[s : s + n] for row in columns),) for s, n in zip(starts, sizes, strict=True))
-
-    show = "stack(" + ", ".join(f"{{{k}}}" for k in range(len(sizes))) + ")"
-    operation = Operation("stack", cls, lambda *c: tuple(x for part in c for x in part), blocks, show)
-    return apply(operation, cls, *vectors)
+    return apply(join(cls, sizes), cls, *vectors)
 
 
-def norm(v: Any) -> R1:
+def norm(v: VectorLike) -> R1:
     """Euclidean length; at 0 its value and its gradient are 0. No under- or overflow."""
     operation = Operation(
         "norm", R1, lambda a: (length(a),), lambda _, a: (((direction_or_zero(a),),),), "norm({0})"

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from liegen.errors import Site
-from liegen.manifolds import Node, Value
+from liegen.manifolds import Manifold, Node
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,7 +14,7 @@ class Parameter:
     """A named argument of a factor: a variable gets Jacobians, a given one does not."""
 
     name: str
-    manifold: type[Value]
+    manifold: type[Manifold]
     variable: bool
     node: Node
 

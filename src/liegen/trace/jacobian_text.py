@@ -1,9 +1,9 @@
 """The Jacobians of a graph as text at group level: sums of products of named blocks.
 
 The notation: ``Ad`` adjoint, ``Jr`` and ``Jl`` right and left Jacobian of the exponential, ``R(x)`` rotation
-matrix, ``[v]x`` matrix of the vector product, ``J`` quarter turn of the plane, ``I[0:2]`` rows and ``I[:, 0:2]``
-columns of the identity, ``B(n)`` tangent basis at a direction, ``D2[f](a, b)`` the derivative of f by its
-second operand where there is no shorter name.
+matrix, ``[v]x`` matrix of the vector product, ``J`` quarter turn of the plane, ``I[0:2]`` rows and
+``I[:, 0:2]`` columns of the identity, ``B(n)`` tangent basis at a direction, ``D2[f](a, b)`` the derivative
+of f by its second operand where there is no shorter name.
 """
 
 from __future__ import annotations
@@ -192,10 +192,10 @@ def labels(node: Node) -> Labels:
     if name == "stack":
         return tuple(_columns(node))
     first, dim = operands[0].manifold, node.manifold.form.dim
-    if issubclass(first, Vector) and issubclass(node.manifold, Vector) and name in _SLOPE:
-        if name != "exp" and name != "log" or node.operation.show.startswith(name + "("):
-            dims = [n.manifold.form.dim for n in operands]
-            return tuple(_slope(text, k, dims, dim) for k, text in enumerate(_SLOPE[name]))
+    # R3.exp, the exponential of a group, is shown with its class
+    if name in _SLOPE and not (name in ("exp", "log") and not node.operation.show.startswith(name)):
+        dims = [n.manifold.form.dim for n in operands]
+        return tuple(_slope(text, k, dims, dim) for k, text in enumerate(_SLOPE[name]))
     own = node.manifold if name == "exp" else first
     flat = issubclass(own, (Vector, SO2)) or isinstance(own.form, AdditiveForm)
     curved: Mapping[str, Labels] = _GROUP if isinstance(own.form, GroupForm) else {}

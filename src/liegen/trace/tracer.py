@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -18,8 +19,9 @@ from .graph import Domain, Graph, Parameter, topological
 
 _domain: ContextVar[list[Domain] | None] = ContextVar("domain", default=None)
 
-_KNOWN = (*(f"R{n}" for n in range(1, 10)), "SO2", "SE2", "SO3", "SE3", "S2", "Cal3_S2", "Cal3DS2", "Cal3Bundler")
-_MANIFOLDS = f"one of liegen's (R1 to R9, {', '.join(_KNOWN[9:])}) or class R12(R, dim=12)"
+_NAMED = ("SO2", "SE2", "SO3", "SE3", "S2", "Cal3_S2", "Cal3DS2", "Cal3Bundler")
+_KNOWN = (*(f"R{n}" for n in range(1, 10)), *_NAMED)
+_MANIFOLDS = f"one of liegen's (R1 to R9, {', '.join(_NAMED)}) or class R12(R, dim=12)"
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Outputs:
 
 
 def outputs(**values: Manifold) -> Outputs:
-    """Name the outputs of a ``@function``: ``return outputs(R=..., p=...)``."""
+    """Name what a ``@function`` returns: ``outputs(R=..., p=...)``."""
     for name, value in values.items():
         if not isinstance(value, Manifold):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise DefinitionError(f"{here()}: output {name!r} is a {type(value).__name__}, not a typed value")
@@ -138,25 +140,27 @@ def trace(
             result = function(*(values[s.name] for s in declared if s.positional),
                               **{s.name: values[s.name] for s in declared if not s.positional})  # fmt: skip
         except LiegenError as error:
-            raise type(error)(f"{name}: {_with_site(error)}") from None
+            raise type(error)(_with_site(name, error)) from None
         except Exception as error:
-            raise DefinitionError(f"{name}: {raised_at(error)}: {_explained(error)}") from None
+            raise DefinitionError(f"{raised_at(error)}: {name}: {_explained(error)}") from None
     named = _outputs(result, f"{site}: {name}", factor=factor)
     graph = Graph(name, doc, site, parameters, named, tuple(domain))
     _all_used(graph)
     return graph
 
 
-def _with_site(error: LiegenError) -> str:
-    """The message, after the user's line where it does not begin with one."""
-    text, site = str(error), raised_at(error)
-    return text if text.startswith(f"{site.file}:") else f"{site}: {text}"
+def _with_site(name: str, error: LiegenError) -> str:
+    """The user's line, the factor, the message."""
+    text = str(error)
+    stated = re.match(r"[^:]+:\d+: ", text)
+    site = stated[0] if stated else f"{raised_at(error)}: "
+    return f"{site}{name}: {text.removeprefix(site)}"
 
 
 def _explained(error: Exception) -> str:
     """What Python said, and what a residual may do instead."""
     text = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"{text}; the values here are elements of manifolds: use their operations (compose, local, @, [k], ...)"
+    return f"{text}; values are elements of manifolds: use their operations (compose, local, @, [k], ...)"
 
 
 @contextmanager

@@ -1,0 +1,104 @@
+"""The operations of vectors as records: values and tangent-space blocks on scalars of any backend."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from liegen.algebra import Scalar, call
+from liegen.algebra.linear import Matrix, column, diagonal, eye, matvec
+from liegen.algebra.linear import Vector as Coordinates
+
+from .form import Blocks
+from .node import Operation, Value
+
+#: An entry of the result from the operands' entries.
+Elementwise = Callable[[Any], Scalar] | Callable[[Any, Any], Scalar]
+#: Its derivatives from the result's and the operands' entries.
+Partials = Callable[[Any, Any], tuple[Scalar, ...]] | Callable[[Any, Any, Any], tuple[Scalar, ...]]
+#: Value, derivatives (by a, by b), and how it is shown.
+ARITHMETIC: dict[str, tuple[Elementwise, Partials, str]] = {
+    "add": (lambda a, b: a + b, lambda _r, _a, _b: (1, 1), "{0} + {1}"),
+    "sub": (lambda a, b: a - b, lambda _r, _a, _b: (1, -1), "{0} - {1}"),
+    "mul": (lambda a, b: a * b, lambda _r, a, b: (b, a), "{0} * {1}"),
+    "div": (lambda a, b: a / b, lambda r, _a, b: (1 / b, -r / b), "{0} / {1}"),
+}
+
+
+def elementwise(
+    cls: type[Value], n: int, name: str, show: str, f: Elementwise, partials: Partials | None
+) -> Operation:
+    """``f`` on each of n entries, scalars repeated; without ``partials`` CasADi differentiates it."""
+
+    def entries(coords: Sequence[Coordinates]) -> list[tuple[Scalar, ...]]:
+        return [tuple(c[k if len(c) > 1 else 0] for c in coords) for k in range(n)]
+
+    def value(*coords: Coordinates) -> Coordinates:
+        return tuple(f(*entry) for entry in entries(coords))
+
+    def blocks(result: Coordinates, *coords: Coordinates) -> Blocks:
+        assert partials is not None
+        slopes = [partials(r, *entry) for r, entry in zip(result, entries(coords), strict=True)]
+        by_operand = [tuple(s[k] for s in slopes) for k in range(len(coords))]
+        return tuple(
+            (column(d) if len(c) == 1 else diagonal(d),) for c, d in zip(coords, by_operand, strict=True)
+        )
+
+    return Operation(name, cls, value, blocks if partials else None, show)
+
+
+def comparison(cls: type[Value], name: str, show: str) -> Operation:
+    """A comparison of two scalars."""
+
+    def value(x: Coordinates, y: Coordinates) -> Coordinates:
+        return (call(name, x[0], y[0]),)
+
+    return Operation(name, cls, value, None, show)
+
+
+def take(cls: type[Value], n: int, positions: Sequence[int], *, single: bool) -> Operation:
+    """Some of n entries; ``single`` is shown as an index."""
+    rows = eye(n)
+    text = str(positions[0]) if single else _slice_text(positions)
+    return Operation(
+        "take",
+        cls,
+        lambda a: tuple(a[k] for k in positions),
+        lambda _, _a: ((tuple(rows[k] for k in positions),),),
+        f"{{0}}[{text}]",
+        tuple(positions),
+    )
+
+
+def _slice_text(positions: Sequence[int]) -> str:
+    step = positions[1] - positions[0] if len(positions) > 1 else 1
+    ends = f"{positions[0]}:{positions[-1] + 1}"
+    return ends if step == 1 else f"{', '.join(map(str, positions))}"
+
+
+def constant_product(cls: type[Value], numbers: list[list[float]]) -> Operation:
+    """M v with a constant matrix."""
+    rows: Matrix = tuple(tuple(_plain(x) for x in row) for row in numbers)
+    return Operation(
+        "matmul", cls, lambda a: matvec(rows, a), lambda _, _a: ((rows,),), "M @ {0}", (numbers,)
+    )
+
+
+def _plain(x: float) -> float | int:
+    """Zeros and ones of a constant matrix are structure."""
+    return int(x) if x in (0.0, 1.0, -1.0) else x
+
+
+def join(cls: type[Value], sizes: Sequence[int]) -> Operation:
+    """Vectors of the given sizes one after the other."""
+    starts = [sum(sizes[:k]) for k in range(len(sizes))]
+    columns = eye(sum(sizes))
+
+    def value(*coords: Coordinates) -> Coordinates:
+        return tuple(x for part in coords for x in part)
+
+    def blocks(*_: Coordinates) -> Blocks:
+        return tuple((tuple(row[s : s + n] for row in columns),) for s, n in zip(starts, sizes, strict=True))
+
+    show = "stack(" + ", ".join(f"{{{k}}}" for k in range(len(sizes))) + ")"
+    return Operation("stack", cls, value, blocks, show)
