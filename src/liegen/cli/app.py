@@ -1,0 +1,78 @@
+"""The command ``liegen``: its commands, and what becomes of errors."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import click
+
+from liegen import __version__
+from liegen.errors import LiegenError
+
+from .bench import bench
+from .check import check
+from .describe import explain, list_factors
+from .generate import generate
+from .verify import verify
+
+#: Exit codes: 0 fine, 1 a check failed, and these.
+WRONG_USE, INTERNAL = 2, 3
+DEBUG = "LIEGEN_DEBUG"
+
+
+class Refused(click.ClickException):
+    """Wrong input: the message alone is enough."""
+
+    exit_code = WRONG_USE
+
+
+class Internal(click.ClickException):
+    """A mistake in liegen."""
+
+    exit_code = INTERNAL
+
+
+class App(click.Group):
+    """Turns liegen's errors into exit code 2 and unexpected ones into 3, both without a traceback."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command."""
+        debug = bool(ctx.params.get("debug") or os.environ.get(DEBUG))
+        try:
+            return super().invoke(ctx)
+        except (click.ClickException, click.exceptions.Exit, click.Abort):
+            raise
+        except BrokenPipeError:
+            raise click.exceptions.Exit(0) from None  # the reader, head for example, has seen enough
+        except LiegenError as error:
+            if debug:
+                raise
+            raise Refused(str(error)) from None
+        except Exception as error:
+            if debug:
+                raise
+            text = " ".join(f"{type(error).__name__}: {error}".split())
+            again = f"liegen --debug {ctx.invoked_subcommand} ..."
+            raise Internal(f"liegen itself failed: {text}\nSee the traceback with: {again}") from None
+
+
+@click.group(cls=App, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--debug", is_flag=True, help=f"Show tracebacks (also: {DEBUG}=1 in the environment).")
+@click.version_option(__version__, prog_name="liegen")
+def app(debug: bool) -> None:
+    """Factors on Lie groups: derive their Jacobians, write NumPy and C, verify.
+
+    SOURCE is a Python file or a dotted module with factors; without it, liegen's library.
+
+    Exit codes: 0 fine, 1 a check failed, 2 wrong use, 3 internal error.
+    """
+
+
+for command in (list_factors, generate, verify, check, explain, bench):
+    app.add_command(command)
+
+
+def main() -> None:
+    """Run the command line of this process."""
+    app(prog_name="liegen")

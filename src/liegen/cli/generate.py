@@ -1,0 +1,128 @@
+"""``liegen generate``: from factors to files."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .shared import chosen, names_option, source_argument, table, tracked
+
+if TYPE_CHECKING:
+    from liegen.sources import AnyFunction
+
+TARGETS = ("numpy", "c")
+LAYOUTS = ("row", "col")
+#: Stands for the output folder in the headers: files are the same wherever they are written.
+ANYWHERE = "DIR"
+
+
+@dataclass(frozen=True)
+class Request:
+    """What ``generate`` was asked for, apart from where to write it."""
+
+    source: str | None
+    names: tuple[str, ...]
+    targets: tuple[str, ...]
+    package: str
+    layout: str
+
+    def command(self, source: str | None, directory: str) -> str:
+        """The command line that repeats the request; options with their default value are left out."""
+        words = ["liegen", "generate", *([source] if source else [])]
+        words += [w for name in self.names for w in ("-f", name)]
+        words += [] if self.targets == TARGETS else [w for target in self.targets for w in ("-t", target)]
+        words += ["-o", directory]
+        words += [] if self.package == default_package(source) else ["--package", self.package]
+        words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
+        return shlex.join(words)
+
+    @property
+    def header(self) -> str:
+        """The command as generated files show it: without folders of this machine."""
+        is_file = self.source is not None and self.source.endswith(".py")
+        return self.command(Path(str(self.source)).name if is_file else self.source, ANYWHERE)
+
+
+def default_package(source: str | None) -> str:
+    """``liegen_factors`` for the library, ``robot_gen`` for ``robot.py`` and for ``my.robot``."""
+    if source is None:
+        return "liegen_factors"
+    stem = Path(source).stem if source.endswith(".py") else source.rpartition(".")[2]
+    name = re.sub(r"[^A-Za-z0-9_]+", "_", stem).strip("_")
+    return f"{name}_gen"
+
+
+def requested(
+    source: str | None, names: Sequence[str], targets: Sequence[str], package: str | None, layout: str
+) -> Request:
+    """Fill in the defaults."""
+    wanted = tuple(t for t in TARGETS if not targets or t in targets)
+    return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout)
+
+
+def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str) -> dict[str, str]:
+    """Derive, check and lay out; nothing is written."""
+    from liegen.emit import check_names, render
+    from liegen.verify import check_finite
+
+    kernels = [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+    check_names(kernels, request.package)
+    for function in functions:
+        check_finite(function)
+    return render(
+        kernels,
+        request.targets,
+        package=request.package,
+        regenerate=regenerate,
+        layout=request.layout,
+    )
+
+
+@click.command()
+@source_argument
+@names_option
+@click.option(
+    "-t", "--target", "targets", multiple=True, type=click.Choice(TARGETS), help="Language; both by default."
+)
+@click.option("-o", "--output", required=True, metavar="DIR", help="Folder to write to; made if need be.")
+@click.option(
+    "--package", metavar="NAME", help="Name of the Python package and prefix of the C functions."
+    " Default: liegen_factors for the library, STEM_gen for a file STEM.py."
+)  # fmt: skip
+@click.option(
+    "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
+    help="col adds C functions with column-major Jacobians (suffix _cm).",
+)  # fmt: skip
+def generate(
+    source: str | None,
+    names: tuple[str, ...],
+    targets: tuple[str, ...],
+    output: str,
+    package: str | None,
+    layout: str,
+) -> None:
+    """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
+    from liegen.emit import write_tree
+
+    request = requested(source, names, targets, package, layout)
+    functions = chosen(source, request.names)
+    files = rendered(request, functions, request.header)
+    done = write_tree(files, Path(output))
+    table(
+        ("factor", "operations", "with Jacobians"),
+        [(f.name, f"{f.kernel.value.operations}", f"{f.kernel.jacobians.operations}") for f in functions],
+        right=(1, 2),
+    )
+    click.echo()
+    for path in done.removed:
+        click.echo(f"removed {Path(output, path)}")
+    folders = sorted({str(Path(output, path).parent) for path in files if "/" in path})
+    click.echo(
+        f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date) to {' and '.join(folders)}"
+    )

@@ -1,0 +1,75 @@
+"""What several commands share: arguments, tables, progress. Imports of weight stand inside functions."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from liegen.sources import AnyFunction
+
+T = TypeVar("T")
+
+source_argument = click.argument("source", required=False)
+names_option = click.option(
+    "-f", "--factor", "names", multiple=True, metavar="NAME", help="Only this factor; may be repeated."
+)
+
+
+def chosen(source: str | None, names: Sequence[str]) -> tuple[AnyFunction, ...]:
+    """The factors that a command is about."""
+    from liegen.sources import load, select
+
+    return select(load(source), names)
+
+
+def count(n: int, noun: str) -> str:
+    """``1 factor``, ``2 factors``."""
+    return f"{n} {noun}{'' if n == 1 else 's'}"
+
+
+def table(titles: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collection[int] = ()) -> None:
+    """Print a table: ruled on a terminal, plain columns anywhere else."""
+    content = [list(row) for row in rows]
+    if sys.stdout.isatty():
+        from rich.box import SIMPLE_HEAD
+        from rich.console import Console
+        from rich.table import Table
+        from rich.text import Text
+
+        ruled = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+        for k, title in enumerate(titles):
+            ruled.add_column(title, justify="right" if k in right else "left", no_wrap=k == 0)
+        for row in content:
+            ruled.add_row(*(Text(cell) for cell in row))
+        Console().print(ruled)
+        return
+    widths = [max(len(row[k]) for row in [titles, *content]) for k in range(len(titles))]
+    for row in [titles, *content]:
+        sized = enumerate(zip(row, widths, strict=True))
+        cells = [cell.rjust(w) if k in right else cell.ljust(w) for k, (cell, w) in sized]
+        click.echo("  ".join(cells).rstrip())
+
+
+def tracked(items: Sequence[T], what: str, label: Callable[[T], str]) -> Iterator[T]:
+    """The items, with progress on standard error while it is a terminal."""
+    if not sys.stderr.isatty() or len(items) < 2:
+        yield from items
+        return
+    with progress() as bar:
+        task = bar.add_task(what, total=len(items))
+        for item in items:
+            bar.update(task, description=f"{what} {label(item)}")
+            yield item
+            bar.advance(task)
+
+
+def progress() -> Any:
+    """A progress bar on standard error that disappears at the end."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    return Progress(console=Console(stderr=True), transient=True)

@@ -1,0 +1,134 @@
+"""``liegen verify``: run the verification suite."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING
+
+import click
+
+from .shared import chosen, count, names_option, progress, source_argument, table
+
+if TYPE_CHECKING:
+    from liegen.verify import Check, FactorReport, Report
+
+#: Checks whose worst figure has a column: relative errors, and the slope of the remainder (2 is right).
+MEASURED = {"value": "value", "Jacobian": "Jacobian", "differences": "differences", "Taylor": "slope"}
+#: The note of a factor without a stated domain, not worth a line.
+EVERYWHERE = "everywhere"
+#: Skipped cases that are named for a factor.
+LISTED = 6
+
+
+@click.command()
+@source_argument
+@names_option
+@click.option(
+    "--samples", type=click.IntRange(min=1), help="Samples a factor; every special case by default."
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def verify(source: str | None, names: tuple[str, ...], samples: int | None, seed: int, as_json: bool) -> None:
+    """Check NumPy and C of SOURCE against an independent reference and against differences."""
+    from liegen.sources import by_name
+    from liegen.verify import verify as run
+    from liegen.verify.run import SAMPLES
+
+    functions = chosen(source, names)
+    started = time.monotonic()
+    with _shown(len(functions)) as told:
+        report = run(
+            functions,
+            samples=samples or SAMPLES,
+            seed=seed,
+            progress=told,
+            reload=partial(by_name, source),
+        )
+    if as_json:
+        click.echo(report.to_json(), nl=False)
+    else:
+        _print(report, time.monotonic() - started)
+    if not report.passed:
+        raise click.exceptions.Exit(1)
+
+
+@contextmanager
+def _shown(factors: int) -> Generator[Callable[[FactorReport, int, int], None] | None]:
+    """A progress bar while standard error is a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with progress() as bar:
+        task = bar.add_task("verify", total=factors)
+
+        def told(report: FactorReport, done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total, description=f"verified {report.factor}")
+
+        yield told
+
+
+def _print(report: Report, seconds: float) -> None:
+    table(
+        ("factor", "checks", *MEASURED.values(), "samples", "skipped"),
+        [_row(f) for f in report.factors],
+        right=range(2, 4 + len(MEASURED)),
+    )
+    for factor in report.factors:
+        for line in _remarks(factor):
+            click.echo(line)
+    for line in _skipped(report.factors):
+        click.echo(line)
+    click.echo()
+    failed = [f.factor for f in report.factors if not f.passed]
+    total, which = count(len(report.factors), "factor"), f": {', '.join(failed)}" if failed else ""
+    settings = f"{count(report.samples, 'sample')} each, seed {report.seed}, {seconds:.0f} s"
+    click.echo(f"{total}, {len(failed)} failed{which} ({settings})")
+    if report.compiler:
+        click.echo(f"C was compiled with {report.compiler}")
+    else:
+        click.echo("C was not checked: there is no C compiler (install gcc or clang, or set CC)")
+
+
+def _row(factor: FactorReport) -> tuple[str, ...]:
+    done = {c.name: c for c in factor.checks if c.checked}
+    good = sum(c.passed for c in done.values())
+    verdict = f"{good} passed" if good == len(done) else f"{len(done) - good} of {len(done)} FAILED"
+    figures = [_figure(done[name]) if name in done else "" for name in MEASURED]
+    kept = max((c.kept for c in done.values()), default=0)
+    skipped = max((len(c.skipped) for c in done.values()), default=0)
+    return factor.factor, verdict, *figures, str(kept), str(skipped)
+
+
+def _figure(check: Check) -> str:
+    if check.name != "Taylor":
+        return f"{check.worst:.1e}"
+    return "linear" if check.worst == float("inf") else f"{check.worst:.2f}"
+
+
+def _remarks(factor: FactorReport) -> Iterable[str]:
+    """What failed and where, and the notes of the rest."""
+    for check in factor.checks:
+        if not check.passed:
+            note = f" ({check.note})" if check.note else ""
+            yield (
+                f"\n{factor.factor}: {check.name} failed: {check.worst:.3g} {check.unit} where "
+                f"{check.bound:.3g} is allowed, at: {check.where or 'no sample'}{note}"
+            )
+        elif check.note not in ("", EVERYWHERE) and check.checked:
+            yield f"{factor.factor}: {check.name}: {check.note}"
+
+
+def _skipped(factors: Iterable[FactorReport]) -> Iterable[str]:
+    """The samples that were left out, once for all factors with the same."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for factor in factors:
+        reasons = tuple(sorted({reason for check in factor.checks for reason in check.skipped}))
+        groups.setdefault(reasons, []).append(factor.factor)
+    for reasons, names in groups.items():
+        if reasons:
+            shown = "; ".join(reasons[:LISTED]) + ("; ..." if len(reasons) > LISTED else "")
+            yield f"{', '.join(names)}: nothing to compare with at: {shown}"

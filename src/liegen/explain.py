@@ -1,0 +1,122 @@
+"""What a factor computes, and what it costs, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from liegen.define import Function
+from liegen.kernel import Kernel
+from liegen.manifolds import Leaf
+from liegen.trace import Graph
+from liegen.trace.jacobian_text import legend
+
+AnyFunction = Function[..., Any]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A factor in one row."""
+
+    name: str
+    variables: Mapping[str, str]
+    given: Mapping[str, str]
+    outputs: Mapping[str, tuple[str, int]]
+    meaning: str
+
+    @property
+    def arguments(self) -> str:
+        """``x: SE3, y: SE3, *, z: SE3``."""
+        variables = [f"{k}: {v}" for k, v in self.variables.items()]
+        given = [f"{k}: {v}" for k, v in self.given.items()]
+        return ", ".join([*variables, *(["*", *given] if given else [])])
+
+    @property
+    def results(self) -> str:
+        """``res: 6``, the dimensions of the outputs' tangents."""
+        return ", ".join(f"{name}: {dim}" for name, (_, dim) in self.outputs.items())
+
+    def as_json(self) -> dict[str, Any]:
+        """The same with plain types."""
+        return {
+            "name": self.name,
+            "variables": dict(self.variables),
+            "given": dict(self.given),
+            "outputs": {name: {"manifold": m, "dim": dim} for name, (m, dim) in self.outputs.items()},
+            "doc": self.meaning,
+        }
+
+
+def summary(function: AnyFunction) -> Summary:
+    """Name, arguments, outputs and the first line of the docstring; nothing is derived."""
+    graph = function.graph
+    lines = graph.doc.strip().splitlines()
+    return Summary(
+        name=graph.name,
+        variables={p.name: p.manifold.form.name for p in graph.parameters if p.variable},
+        given={p.name: p.manifold.form.name for p in graph.parameters if not p.variable},
+        outputs={n: (node.manifold.form.name, node.manifold.form.dim) for n, node in graph.outputs},
+        meaning=lines[0] if lines else "",
+    )
+
+
+def explanation(function: AnyFunction) -> str:
+    """Residual, Jacobians at group level, conventions, and the operations after each pass."""
+    kernel, row = function.kernel, summary(function)
+    lines = [f"{row.name}({row.arguments}) -> {row.results}", *_indented(kernel.doc.strip().splitlines())]
+    lines += _section("Formula", kernel.formula)
+    lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.graph)])
+    lines += _section("Conventions", kernel.conventions)
+    lines += _section("Operations with Jacobians, after each pass", _pass_rows(kernel))
+    lines += _section("Operations by kind", _kind_rows(kernel))
+    return "\n".join(lines) + "\n"
+
+
+def _section(title: str, lines: Iterable[str]) -> list[str]:
+    inner = _indented(lines)
+    return ["", f"{title}:", *inner] if inner else []
+
+
+def _indented(lines: Iterable[str]) -> list[str]:
+    return [f"  {line}".rstrip() for line in lines]
+
+
+def _pass_rows(kernel: Kernel) -> list[str]:
+    rows = [(p.name, p.operations) for p in kernel.passes]
+    width = max(len(name) for name, _ in rows)
+    lines: list[str] = []
+    for (name, count), (_, before) in zip(rows, [rows[0], *rows], strict=False):
+        change = count - before
+        lines.append(f"{name:<{width}}  {count:>6}" + (f"  {change:+d}" if change else ""))
+    return lines
+
+
+def _kind_rows(kernel: Kernel) -> list[str]:
+    alone, both = kernel.value.op_counts(), kernel.jacobians.op_counts()
+    kinds = sorted({*alone, *both})
+    title = "residual" if [o.name for o in kernel.outputs] == ["res"] else "outputs"
+    rows: list[Sequence[Any]] = [("", title, "with Jacobians")]
+    rows += [(kind, alone.get(kind, 0), both.get(kind, 0)) for kind in kinds]
+    rows.append(("total", kernel.value.operations, kernel.jacobians.operations))
+    return [f"{a!s:<8}  {b!s:>8}  {c!s:>14}" for a, b, c in rows]
+
+
+def _notes(graph: Graph) -> list[str]:
+    """In which frame the noise lives, for the residual z.local(x.between(y))."""
+    result = graph.outputs[0][1]
+    if result.operation.name != "local" or not isinstance(result.operands[0].operation, Leaf):
+        return []
+    measured, predicted = result.operands
+    if predicted.operation.name != "between" or not all(
+        isinstance(n.operation, Leaf) and n.operation.name == "parameter"
+        for n in (measured, *predicted.operands)
+    ):
+        return []
+    z, x, y = (n.operation.show for n in (measured, *predicted.operands))
+    return [
+        f"noise of covariance S in the frame of {z}: with {x} fixed, {y} has covariance S in its own frame;",
+        f"with {y} fixed, {x} has covariance Ad({z}) S Ad({z})^T in its own frame",
+        f"(exact, since {y} = {x} {z} Exp(n))",
+    ]

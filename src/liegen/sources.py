@@ -1,0 +1,249 @@
+"""Factors from a Python file, from a dotted module, or from the library."""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import hashlib
+import importlib
+import importlib.util
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType, TracebackType
+from typing import Any
+
+from liegen.define import Function
+from liegen.errors import DefinitionError, LiegenError, Site, SourceError
+from liegen.trace import unknown_annotation
+
+AnyFunction = Function[..., Any]
+LIBRARY = "liegen.library"
+
+
+def load(source: str | None) -> tuple[AnyFunction, ...]:
+    """The factors and functions of a source, in the order of their definition.
+
+    ``None`` is the library, a path that ends in ``.py`` a file (its folder is put on ``sys.path``, so that it
+    may import its neighbours), anything else a dotted module. What a source imports with an ``import``
+    statement is not its own and does not count; a package's imports from its own modules do. A result of
+    ``vary``, ``fix`` or ``bind`` counts where it gets its name. Raises SourceError for a source that cannot
+    be imported or has no factor, DefinitionError for a factor that liegen refuses and for two with one name.
+    """
+    name = source if source is not None else LIBRARY
+    module = _import_file(Path(name)) if _is_file(name) else _import_module(name)
+    tree = _tree(module)
+    _refuse_redefinitions(module, tree)
+    foreign = _imported_names(tree, module)
+    values: dict[str, Any] = vars(module)
+    functions: dict[str, AnyFunction] = {
+        key: value for key, value in values.items() if _is_function(value) and key not in foreign
+    }
+    _refuse_twins(module, tree, functions)
+    if not functions:
+        raise SourceError(f"{name} defines no factor; write one with @factor (from liegen import factor)")
+    return tuple({id(f): f for f in functions.values()}.values())
+
+
+def by_name(source: str | None) -> dict[str, AnyFunction]:
+    """The same by name; other processes load a source again with it."""
+    return {f.name: f for f in load(source)}
+
+
+def select(functions: Sequence[AnyFunction], names: Iterable[str]) -> tuple[AnyFunction, ...]:
+    """The functions with the given names, in their own order; all of them when no name is given.
+
+    Raises SourceError for an unknown name, with the names that come near.
+    """
+    wanted = list(names)
+    known = [f.name for f in functions]
+    for name in wanted:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 3) or [k for k in known if name in k]
+            hint = f"did you mean {' or '.join(near)}? " if near else ""
+            raise SourceError(f"there is no factor {name!r}; {hint}There are: {', '.join(known)}")
+    return tuple(f for f in functions if not wanted or f.name in wanted)
+
+
+def _is_function(value: Any) -> bool:
+    return isinstance(value, Function)
+
+
+def _is_file(source: str) -> bool:
+    return source.endswith(".py") or "/" in source or "\\" in source or Path(source).is_file()
+
+
+def _import_file(path: Path) -> ModuleType:
+    """Run a file as a module under a name of its own, so that it hides no other module."""
+    if not path.is_file():
+        what = "is a folder" if path.is_dir() else "does not exist"
+        raise SourceError(f"{path} {what}; give a Python file with factors, or a dotted module")
+    place = path.resolve()
+    key = hashlib.sha256(str(place).encode()).hexdigest()[:8]
+    module = ModuleType(f"_liegen_{place.stem}_{key}")
+    module.__file__ = str(place)
+    if str(place.parent) not in sys.path:
+        sys.path.insert(0, str(place.parent))
+    with _clear_errors(str(path), str(place)):
+        code = compile(place.read_bytes(), str(place), "exec", dont_inherit=True)
+        sys.modules[module.__name__] = module
+        exec(code, vars(module))
+    return module
+
+
+def _import_module(name: str) -> ModuleType:
+    """Import a dotted module as ``python -m`` would: the current folder counts."""
+    if not all(part.isidentifier() for part in name.split(".")):
+        raise SourceError(f"{name!r} is neither a Python file nor a dotted module")
+    here = str(Path.cwd())
+    if here not in sys.path and "" not in sys.path:
+        sys.path.insert(0, here)
+    try:
+        missing = importlib.util.find_spec(name) is None  # imports the packages above
+    except ModuleNotFoundError as error:
+        missing = error.name is not None and (name + ".").startswith(error.name + ".")
+        if not missing:
+            raise SourceError(f"{name}: {_plain(error)}") from None
+    except Exception as error:
+        raise SourceError(f"{name}: {_plain(error)}") from None
+    if missing:
+        file = Path(*name.split(".")).with_suffix(".py")
+        hint = f"; did you mean the file {file}?" if file.is_file() else "; a file ends in .py"
+        raise SourceError(f"there is no module {name!r}{hint}")
+    spec: Any = importlib.util.find_spec(name)
+    with _clear_errors(name, str(spec.origin)):
+        return importlib.import_module(name)
+
+
+@contextmanager
+def _clear_errors(source: str, file: str) -> Any:
+    """Turn whatever a user's file raises into one line that names the file and the line."""
+    try:
+        yield
+    except LiegenError as error:
+        site = _site(error.__traceback__, file)
+        text = str(error)
+        raise type(error)(text if site is None or f"{site.file}:" in text else f"{site}: {text}") from None
+    except SyntaxError as error:
+        where = Site(Path(error.filename or source).name, error.lineno or 0)
+        line = f": {error.text.strip()}" if error.text else ""
+        raise SourceError(f"{where}: syntax error ({error.msg}){line}") from None
+    except (Exception, SystemExit) as error:
+        site = _site(error.__traceback__, file)
+        if isinstance(error, NameError) and site is not None:
+            _refuse_annotation(error, site, file)
+        raise SourceError(f"{site or source}: {_plain(error)}") from None
+
+
+def _refuse_annotation(error: NameError, site: Site, file: str) -> None:
+    """Name the factor and the argument when the unknown name is an annotation."""
+    for node in ast.walk(ast.parse(Path(file).read_bytes())):
+        if isinstance(node, ast.FunctionDef):
+            for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
+                names = [n for n in ast.walk(argument) if isinstance(n, ast.Name) and n.id == error.name]
+                if names and site.line in (node.lineno, argument.lineno):
+                    raise unknown_annotation(site, node.name, argument.arg, str(error.name)) from None
+
+
+def _plain(error: BaseException) -> str:
+    """An exception in one line, with a cure where there is a common one."""
+    if isinstance(error, ModuleNotFoundError):
+        return f"cannot import {error.name}; install it, or run liegen where it is installed"
+    if isinstance(error, SystemExit):
+        return 'it ends the program when imported; put that under if __name__ == "__main__":'
+    text = " ".join(str(error).split())
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+
+
+def _site(traceback: TracebackType | None, file: str) -> Site | None:
+    """The last line of the user's file that was being run."""
+    site = None
+    while traceback is not None:
+        if traceback.tb_frame.f_code.co_filename == file:
+            site = Site(Path(file).name, traceback.tb_lineno)
+        traceback = traceback.tb_next
+    return site
+
+
+def _tree(module: ModuleType) -> ast.Module:
+    """The module's source, empty where there is none."""
+    file = getattr(module, "__file__", None)
+    source = Path(file).read_bytes() if file and file.endswith(".py") else b""
+    return ast.parse(source)
+
+
+def _imported_names(tree: ast.Module, module: ModuleType) -> set[str]:
+    """Names that import statements bind at the module's top, those from a package's own modules left out."""
+    is_package = hasattr(module, "__path__")
+    names: set[str] = set()
+    for node in _top_level(tree.body):
+        if isinstance(node, ast.Import):
+            names |= {alias.asname or alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            own = node.level == 1 or (node.module or "").startswith(module.__name__ + ".")
+            if not (is_package and own):
+                names |= {n for alias in node.names for n in _bound(alias, node, module)}
+    return names
+
+
+def _bound(alias: ast.alias, node: ast.ImportFrom, module: ModuleType) -> list[str]:
+    if alias.name != "*":
+        return [alias.asname or alias.name]
+    package = module.__name__ if hasattr(module, "__path__") else module.__name__.rpartition(".")[0]
+    name = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+    other = sys.modules.get(name)
+    return [key for key, value in vars(other).items() if vars(module).get(key) is value] if other else []
+
+
+def _top_level(body: Sequence[ast.stmt]) -> Iterable[ast.stmt]:
+    """Statements that run when the module is imported, with those inside of if, try and with."""
+    for node in body:
+        yield node
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            inner = [n for n in ast.iter_child_nodes(node) if isinstance(n, (ast.stmt, ast.ExceptHandler))]
+            for n in inner:
+                yield from _top_level(n.body if isinstance(n, ast.ExceptHandler) else [n])
+
+
+def _refuse_redefinitions(module: ModuleType, tree: ast.Module) -> None:
+    """Two ``def`` of one name: Python keeps the second alone, silently."""
+    first: dict[str, int] = {}
+    file = _file_name(module)
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and node.decorator_list:
+            before = first.setdefault(node.name, node.lineno)
+            if before != node.lineno and _is_function(vars(module).get(node.name)):
+                raise DefinitionError(
+                    f"{Site(file, node.lineno)}: there is another factor {node.name!r} "
+                    f"at {Site(file, before)}; rename one of them"
+                )
+
+
+def _refuse_twins(module: ModuleType, tree: ast.Module, functions: Mapping[str, AnyFunction]) -> None:
+    """Two different factors that call themselves the same, as results of vary, fix and bind may."""
+    first: dict[str, str] = {}
+    file, lines = _file_name(module), _bindings(tree)
+    for key, f in functions.items():
+        other = first.setdefault(f.name, key)
+        if functions[other] is not f:
+            places = " and ".join(f"{k} ({Site(file, lines[k])})" if k in lines else k for k in (other, key))
+            raise DefinitionError(
+                f"{places} are two factors with the name {f.name!r}; rename one of them, "
+                "with name=... in vary, fix or bind"
+            )
+
+
+def _bindings(tree: ast.Module) -> dict[str, int]:
+    """The line where each name is first defined."""
+    lines: dict[str, int] = {}
+    for node in _top_level(tree.body):
+        targets = node.targets if isinstance(node, ast.Assign) else []
+        names = [target.id for target in targets if isinstance(target, ast.Name)]
+        for name in [node.name] if isinstance(node, ast.FunctionDef) else names:
+            lines.setdefault(name, node.lineno)
+    return lines
+
+
+def _file_name(module: ModuleType) -> str:
+    return Path(getattr(module, "__file__", None) or module.__name__).name
