@@ -1,7 +1,7 @@
 /*
  * projection_cal3_bundler
  *
- * Pixel of p in the camera x with known radial distortion and calibration K, minus its measurement z [px].
+ * Pixel of p in the camera x with known radial distortion K, minus its measurement z [px].
  *
  * Formula:
  *   a = x.transform_to(p)

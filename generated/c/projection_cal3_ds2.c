@@ -1,7 +1,7 @@
 /*
  * projection_cal3_ds2
  *
- * Pixel of p in the camera x with known distortion and calibration K, minus its measurement z [px].
+ * Pixel of p in the camera x with known distortion K, minus its measurement z [px].
  *
  * Formula:
  *   a = x.transform_to(p)

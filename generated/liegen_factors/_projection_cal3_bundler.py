@@ -1,6 +1,6 @@
 # projection_cal3_bundler
 #
-# Pixel of p in the camera x with known radial distortion and calibration K, minus its measurement z [px].
+# Pixel of p in the camera x with known radial distortion K, minus its measurement z [px].
 #
 # Formula:
 #   a = x.transform_to(p)
@@ -68,7 +68,7 @@ def projection_cal3_bundler(
     K: npt.ArrayLike,
     z: npt.ArrayLike,
 ) -> Array:
-    """Pixel of p in the camera x with known radial distortion and calibration K, minus its measurement z [px].
+    """Pixel of p in the camera x with known radial distortion K, minus its measurement z [px].
 
     Arguments:
         x: (..., 7) SE3 (qx, qy, qz, qw, x, y, z), variable, tangent of 6
@@ -99,7 +99,7 @@ def projection_cal3_bundler_jacobians(
     K: npt.ArrayLike,
     z: npt.ArrayLike,
 ) -> ProjectionCal3BundlerJacobians:
-    """Pixel of p in the camera x with known radial distortion and calibration K, minus its measurement z [px].
+    """Pixel of p in the camera x with known radial distortion K, minus its measurement z [px].
 
     With the Jacobians by the tangent of every variable.
 

@@ -64,8 +64,8 @@ _NAMES: dict[str, tuple[str, ...]] = {
         "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Vector",
     ),
     ".manifolds.functions": (
-        "abs", "acos", "asin", "atan2", "cos", "cross", "dot", "exp", "log", "maximum", "minimum", "sin", "sqrt",
-        "tan", "where",
+        "abs", "acos", "asin", "atan2", "cos", "cross", "dot", "exp", "log", "maximum", "minimum", "sin",
+        "sqrt", "tan", "where",
     ),
     ".manifolds.vector": ("norm", "stack"),
     ".trace": ("outputs", "require"),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 P = ParamSpec("P")
 T = TypeVar("T")
 S = TypeVar("S", bound="Manifold | Outputs")
-#: Draws the arguments of one sample: (draw, case) -> {argument: value}; see liegen.verify.samples.
+#: Draws the arguments of one sample: (draw, case) -> {argument: value}; see liegen.samples.
 Sampler = Callable[..., Mapping[str, Value]]
 
 

@@ -10,7 +10,7 @@ from liegen.program import Program
 
 @dataclass(frozen=True)
 class Argument:
-    """A parameter: ``storage`` names its scalars (``("qx", ..., "z")`` for SE3), ``dim`` is its tangent's size."""
+    """A parameter: ``storage`` names its scalars (``qx`` to ``z`` for SE3), ``dim`` is its tangent's size."""
 
     name: str
     manifold: str

@@ -1,7 +1,7 @@
 """Arguments for verification: what is drawn, and at which special cases.
 
-A sampler is a function ``(draw, case) -> {argument: typed value}``. Factors of the library state their own, so
-that the residual has the rotation angle that the case asks for; ``default_sampler`` serves any other factor.
+A sampler is a function ``(draw, case) -> {argument: typed value}``. Factors of the library state their own,
+so that the residual has the rotation that the case asks for; ``default_sampler`` serves any other factor.
 """
 
 from __future__ import annotations
@@ -25,8 +25,10 @@ Sampler = Callable[["Draw", "Case"], Mapping[str, Value]]
 class Case:
     """A kind of sample.
 
-    ``angle``: rotation [rad] of the residual (or between the arguments), None for any. ``offset``: length of its
-    translation [m], None for any. ``spread``: size of positions [m]. ``negate``: store -q for every quaternion.
+    ``angle``: rotation [rad] of the residual (or between the arguments), None for any. ``offset``: length of
+    its translation [m], None for any. ``spread``: size of positions [m]. ``negate``: at least one rotation is
+    stored as -q. ``apart``: positions are that far from each other too, and their small residual is what is
+    left of large numbers: no method in double precision has more digits of it than rounding leaves.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Case:
     offset: float | None = None
     spread: float = 1.0
     negate: bool = False
+    apart: bool = False
 
 
 _SWITCHES = tuple(math.sqrt(s) for s in (tables.STUMPFF3_END, tables.STUMPFF5_END, tables.INVERSE_END))
@@ -45,7 +48,7 @@ ANGLES: tuple[float, ...] = (
 
 CASES: tuple[Case, ...] = (
     Case("random"),
-    Case("random, 30 m apart", spread=30.0),
+    Case("tens of metres", spread=30.0),
     Case("identity", angle=0.0, offset=0.0),
     Case("zero rotation", angle=0.0),
     *(Case(f"angle {angle!r}", angle=angle) for angle in ANGLES),
@@ -53,6 +56,7 @@ CASES: tuple[Case, ...] = (
     *(Case(f"offset {length!r}", offset=length) for length in (1e-170, 1e-8)),
     Case("kilometres", spread=1e3),
     Case("thousands of kilometres", spread=1e6),
+    Case("thousands of kilometres apart", spread=1e6, apart=True),
     Case("negated quaternions", negate=True),
 )
 
@@ -85,7 +89,8 @@ class Draw:
         if isinstance(form, RotationForm):
             return manifold.from_storage(self._rotation(form))
         if issubclass(manifold, Vector):
-            return manifold.from_storage(self.vector(form.dim, spread=spread))
+            # a spread is one of positions: other vectors are weights, pixels, depths
+            return manifold.from_storage(self.vector(form.dim, spread=spread if form.dim in (2, 3) else 1.0))
         if form.name in _CALIBRATIONS:
             low, high = _CALIBRATIONS[form.name]
             return manifold.from_storage(self.generator.uniform(low, high))
@@ -115,31 +120,50 @@ _CALIBRATIONS: Mapping[str, tuple[Sequence[float], Sequence[float]]] = {
 
 
 def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:
-    """Group elements of one class keep the case's distance from the first of them, the rest is random."""
+    """Samples of any factor.
+
+    Elements of one class keep the case's rotation or offset from the first of them; an element of a group
+    that is alone in its class has the case's rotation from the identity. The rest is random.
+    """
 
     def sample(draw: Draw, case: Case) -> dict[str, Value]:
-        base: dict[str, Manifold] = {}
+        kinds = [m.form.name for m in manifolds.values()]
+        base: dict[str, Any] = {}
         values: dict[str, Value] = {}
         for name, manifold in manifolds.items():
             kind = manifold.form.name
-            curved = not issubclass(manifold, Vector) and kind not in _CALIBRATIONS
-            if curved and kind in base and case.angle is not None:
+            if kind not in base and case.angle is not None and kinds.count(kind) == 1 and _turns(manifold):
+                base[kind] = _identity(manifold)
+            asked = case.offset if issubclass(manifold, Vector) else case.angle
+            if kind in base and kind not in _CALIBRATIONS and asked is not None:
                 values[name] = base[kind].retract(draw.tangent(manifold, case))
             else:
                 values[name] = draw.element(manifold, case.spread)
-                base.setdefault(kind, values[name])  # type: ignore[arg-type]
+                base.setdefault(kind, values[name])
         return values
 
     return sample
 
 
-def negated(values: Mapping[str, Value]) -> dict[str, Value]:
-    """The same rotations by the other quaternion."""
-    return {name: _NEGATE.get(v.form.name, lambda u: u)(v) for name, v in values.items()}
+def _turns(manifold: type[Manifold]) -> bool:
+    return isinstance(manifold.form, PoseForm | RotationForm)
 
 
-def _negated_quaternion(v: Value) -> Value:
+def _identity(manifold: Any) -> Any:
+    return manifold.identity()
+
+
+def negated(values: Mapping[str, Value], draw: Draw, *, always: bool = False) -> dict[str, Value]:
+    """The same rotations, some of them by the other quaternion; at least one where ``always``."""
+    names = [name for name, v in values.items() if v.form.name in _QUATERNIONS]
+    chosen = {name for name in names if draw.uniform(0, 1) < 0.5}
+    if always and names and not chosen:
+        chosen = {names[int(draw.uniform(0, len(names)))]}
+    return {name: _other_quaternion(v) if name in chosen else v for name, v in values.items()}
+
+
+def _other_quaternion(v: Value) -> Value:
     return type(v).holding([*(-c for c in v.coords[:4]), *v.coords[4:]])
 
 
-_NEGATE: Mapping[str, Callable[[Value], Value]] = {"SO3": _negated_quaternion, "SE3": _negated_quaternion}
+_QUATERNIONS = ("SO3", "SE3")

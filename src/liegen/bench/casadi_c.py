@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from liegen.derive import lowered
 from liegen.differentiate import ORDERS, Expressions, expressions, jacobians
 from liegen.emit import render
 from liegen.emit.templates import lay_out
-from liegen.native import build_shared
+from liegen.native import compile_shared
 from liegen.samples import Case, Draw, default_sampler
 
 from .timing import Row, driver, in_turn, summarise
@@ -47,7 +48,7 @@ def compare(function: Function[..., object], *, calls: int, rounds: int, seed: i
     text = lay_out("bench/driver.c.j2", {"variants": variants, "inputs": inputs.shape[1]})
     sources = {path: source for v in variants for path, source in v.sources.items()}
     with tempfile.TemporaryDirectory() as folder:
-        library = build_shared({**sources, "driver.c": text}, Path(folder), FLAGS)
+        library = _built({**sources, "driver.c": text}, Path(folder))
         buffers = {v.name: np.zeros(sum(sizes)) for v in variants}
         runs = {v.label: driver(library, v.name, inputs, buffers[v.name]) for v in variants}
         errors = _errors(variants, {v.name: _sampled(library, v, inputs, buffers) for v in variants})
@@ -55,13 +56,24 @@ def compare(function: Function[..., object], *, calls: int, rounds: int, seed: i
     return summarise(times, {v.label: v.operations for v in variants}, errors)
 
 
+def _built(sources: Mapping[str, str], folder: Path) -> ctypes.CDLL:
+    for name, text in sources.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    library = folder / "bench.so"
+    compile_shared([folder / name for name in sources if name.endswith(".c")], library, FLAGS)
+    return ctypes.CDLL(str(library))
+
+
 def _sampled(
-    library: object, variant: Variant, inputs: NDArray[np.float64], buffers: Mapping[str, NDArray[np.float64]]
+    library: ctypes.CDLL,
+    variant: Variant,
+    inputs: NDArray[np.float64],
+    buffers: Mapping[str, NDArray[np.float64]],
 ) -> NDArray[np.float64]:
     """What a variant computes of some fifty of the inputs."""
     found: list[NDArray[np.float64]] = []
     for k in range(0, len(inputs), max(1, len(inputs) // 50)):
-        driver(library, variant.name, inputs[k : k + 1], buffers[variant.name])()  # type: ignore[arg-type]
+        driver(library, variant.name, inputs[k : k + 1], buffers[variant.name])()
         found.append(buffers[variant.name].copy())
     return np.array(found)
 

@@ -1,7 +1,7 @@
 """The built-in factors: the six rows of GTSAM's table, in 2D and 3D.
 
-Names say the type: ``between_se3``, ``range_se2_r2``, ``projection_cal3_s2``. The forms that GTSAM evaluates, where
-they differ from the documents' formula, end in ``_gtsam``.
+Names say the type: ``between_se3``, ``range_se2_r2``, ``projection_cal3_s2``. The forms that GTSAM evaluates,
+where they differ from the documents' formula, end in ``_gtsam``.
 """
 
 from __future__ import annotations

@@ -27,13 +27,13 @@ def projection_cal3_s2(x: SE3, p: R3, *, K: Cal3_S2, z: R2):
 
 @factor(sample=sampling.camera(Cal3DS2))
 def projection_cal3_ds2(x: SE3, p: R3, *, K: Cal3DS2, z: R2):
-    """Pixel of p in the camera x with known distortion and calibration K, minus its measurement z [px]."""
+    """Pixel of p in the camera x with known distortion K, minus its measurement z [px]."""
     return reprojection(x, p, K, z)
 
 
 @factor(sample=sampling.camera(Cal3Bundler))
 def projection_cal3_bundler(x: SE3, p: R3, *, K: Cal3Bundler, z: R2):
-    """Pixel of p in the camera x with known radial distortion and calibration K, minus its measurement z [px]."""
+    """Pixel of p in the camera x with known radial distortion K, minus its measurement z [px]."""
     return reprojection(x, p, K, z)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from liegen.manifolds import Calibration, Group, Manifold, Value
+from liegen.manifolds import R1, SE3, Calibration, Group, Manifold, Value
 from liegen.samples import Case, Draw, Sampler
 
 
@@ -22,13 +22,20 @@ def prior(manifold: type[Manifold]) -> Sampler:
 
 
 def between(group: type[Group]) -> Sampler:
-    """x and y anywhere (equal where the case is the identity), z the case's tangent away from x^-1 y."""
+    """x and y anywhere (equal where the case is the identity), z the case's tangent away from x^-1 y.
+
+    Far from the origin either y is near x and the residual small, or both are apart and the residual large:
+    a small difference of large relative poses has lost its digits already, which is the case ``apart``.
+    """
 
     def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
+        far = case.spread > 1.0 and not case.apart
+        near = far and draw.uniform(0, 1) < 0.5
         x = draw.element(group, case.spread)
-        y = x if case.name == "identity" else draw.element(group, case.spread)
+        y = x.retract(draw.tangent(group, case)) if near else draw.element(group, case.spread)
+        y = x if case.name == "identity" else y
         z = x.between(y).retract(-draw.tangent(group, case))
-        return {"x": x, "y": y, "z": z}
+        return {"x": x, "y": y, "z": draw.element(group, case.spread) if far and not near else z}
 
     return sample
 
@@ -45,9 +52,8 @@ def _pair(draw: Draw, case: Case, first: type[Manifold], second: type[Manifold])
 
 
 def _moved(x: Any, position: Any) -> Any:
-    form = x.form
-    kept = list(x.coords[: form.size - len(position)])
-    return type(x).from_storage([*kept, *position])
+    kept = list(x.coords[: x.form.size - len(position)])
+    return x.from_storage([*kept, *position])
 
 
 def distance(first: type[Manifold], second: type[Manifold]) -> Sampler:
@@ -55,15 +61,9 @@ def distance(first: type[Manifold], second: type[Manifold]) -> Sampler:
 
     def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
         pair = _pair(draw, case, first, second)
-        return {**pair, "z": draw.element(_scalar(), case.spread)}
+        return {**pair, "z": R1.from_storage(draw.vector(1, spread=case.spread))}
 
     return sample
-
-
-def _scalar() -> type[Manifold]:
-    from liegen.manifolds import R1
-
-    return R1
 
 
 def direction(pose: type[Any], second: type[Manifold]) -> Sampler:
@@ -82,8 +82,6 @@ def camera(calibration: type[Calibration]) -> Sampler:
     """A camera, a point in its field of view 0.5 to 10 spreads away, and a pixel near its image."""
 
     def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
-        from liegen.manifolds import SE3
-
         x = SE3.identity() if case.name == "identity" else draw.element(SE3, case.spread)
         depth = draw.uniform(0.5, 10.0) * case.spread
         ray = np.array([draw.uniform(-0.7, 0.7), draw.uniform(-0.5, 0.5), 1.0])

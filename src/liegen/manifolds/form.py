@@ -22,9 +22,7 @@ Blocks = tuple[Chain | None, ...]
 Compute = Callable[[Any], Vector] | Callable[[Any, Any], Vector] | Callable[[Any, Any, Any], Vector]
 #: The blocks from the result and the operands.
 Rule = (
-    Callable[[Any, Any], Blocks]
-    | Callable[[Any, Any, Any], Blocks]
-    | Callable[[Any, Any, Any, Any], Blocks]
+    Callable[[Any, Any], Blocks] | Callable[[Any, Any, Any], Blocks] | Callable[[Any, Any, Any, Any], Blocks]
 )
 
 
@@ -59,11 +57,11 @@ class ManifoldForm(ABC):
         return None
 
     def retract_blocks(self) -> Rule | None:
-        """Rule (result, x, d) -> blocks of ``retract``; None: automatic differentiation through the storage."""
+        """Rule (result, x, d) -> blocks of ``retract``; None: differentiation through the storage."""
         return None
 
     def local_blocks(self) -> Rule | None:
-        """Rule (result, x, y) -> blocks of ``local``; None: automatic differentiation through the storage."""
+        """Rule (result, x, y) -> blocks of ``local``; None: differentiation through the storage."""
         return None
 
 

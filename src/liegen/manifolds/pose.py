@@ -39,9 +39,10 @@ class Pose(Group, Generic[Q, P, B]):
 
         def blocks(_: Coords, q: Coords, _t: Coords) -> Blocks:
             """The rotation moves alone, the translation seen from the body."""
-            columns = [(zeros(form.rotation.space, form.rotation.dim), eye(form.rotation.dim)),
-                       (transpose(form.rotation.matrix(q)), zeros(form.rotation.dim, form.rotation.space))]  # fmt: skip
-            return tuple((stacked(*form.in_order(turn, move)),) for move, turn in columns)
+            space, dim = form.rotation.space, form.rotation.dim
+            turn = form.in_order(eye(dim), zeros(space, dim))
+            move = form.in_order(zeros(dim, space), transpose(form.rotation.matrix(q)))
+            return (stacked(*turn),), (stacked(*move),)
 
         return apply(Operation("pose", cls, form.join, blocks, cls.__name__ + "({0}, {1})"), cls, rotation, t)
 

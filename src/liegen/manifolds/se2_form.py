@@ -13,8 +13,8 @@ from .so2_form import SO2Form
 class SE2Form(PoseForm):
     """Poses of the plane.
 
-    With ad = [[a J, u], [0, 0]], J = [[0, -1], [1, 0]], u = (rho_y, -rho_x), the cube of ad is -a^2 ad, so the
-    series of Jr and of its inverse end after ad^2 = [[-a^2 I, a rho], [0, 0]].
+    With ad = [[a J, u], [0, 0]], J = [[0, -1], [1, 0]], u = (rho_y, -rho_x), the cube of ad is -a^2 ad, so
+    the series of Jr and of its inverse end after ad^2 = [[-a^2 I, a rho], [0, 0]].
     """
 
     name = "SE2"

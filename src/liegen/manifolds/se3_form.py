@@ -31,8 +31,9 @@ from .so3_form import SO3Form, series
 
 
 def _dual(phi: Coords, rho: Coords, a: Scalar, b: Scalar, da: Scalar, db: Scalar) -> Matrix:
-    """Derivative of ``series(phi, a, b)`` in the direction ``rho``; da, db are 2 da/ds, 2 db/ds at s = |phi|^2.
+    """Derivative of ``series(phi, a, b)`` in the direction ``rho``.
 
+    With da, db for twice the slopes of a, b by s = |phi|^2 it is
     a [rho]x + da (phi.rho) [phi]x + b (phi rho^T + rho phi^T) - 2 b (phi.rho) I
     + db (phi.rho) (phi phi^T - s I).
     """

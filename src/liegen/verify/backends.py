@@ -1,0 +1,140 @@
+"""The code under test: ``Program.evaluate``, the generated NumPy package, the compiled C, each on a batch."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+import tempfile
+from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.emit import render
+from liegen.kernel import Kernel
+from liegen.program import Program
+
+from .compiled import c_backends, compile_c
+
+Array = NDArray[np.float64]
+#: Arrays (samples, size) by argument, or (samples, *shape) by output.
+Arrays = Mapping[str, Array]
+Evaluate = Callable[[Arrays], dict[str, Array]]
+
+PACKAGE = "liegen_verified"
+TARGETS = ("numpy", "c")
+
+
+@dataclass(frozen=True)
+class Backend:
+    """One way to compute a factor. Without ``jacobians`` it is the function of the outputs alone."""
+
+    name: str
+    jacobians: bool
+    evaluate: Evaluate
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """A temporary folder with the generated code; ``library`` is the compiled C, None without a compiler."""
+
+    folder: Path
+    library: Path | None
+    compiler: str
+
+
+@contextmanager
+def workspace(kernels: Sequence[Kernel]) -> Generator[Workspace]:
+    """Render the kernels to a temporary folder and compile them. Raises ToolError when C does not compile."""
+    with tempfile.TemporaryDirectory(prefix="liegen-verify-") as name:
+        folder = Path(name)
+        for path, text in render(kernels, TARGETS, package=PACKAGE, regenerate="liegen verify").items():
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text, encoding="utf-8")
+        library, compiler = compile_c(folder / "c", folder)
+        yield Workspace(folder, library, compiler)
+
+
+def backends(kernel: Kernel, place: Workspace) -> tuple[Backend, ...]:
+    """Everything that computes this factor: programs, NumPy functions and, if compiled, C functions."""
+    compiled = c_backends(kernel, place.library, PACKAGE) if place.library else ()
+    return (
+        *programs(kernel),
+        *numpy_backends(kernel, place.folder),
+        *(Backend(name, jacobians, evaluate) for name, jacobians, evaluate in compiled),
+    )
+
+
+def programs(kernel: Kernel) -> tuple[Backend, Backend]:
+    """Both programs of a kernel, the complete one first."""
+    return (
+        Backend("program", True, program_evaluator(kernel.jacobians)),
+        Backend("program, value", False, program_evaluator(kernel.value)),
+    )
+
+
+def program_evaluator(program: Program) -> Evaluate:
+    """``Program.evaluate`` on a batch."""
+
+    def evaluate(arguments: Arrays) -> dict[str, Array]:
+        count = len(next(iter(arguments.values())))
+        results = program.evaluate({name: tuple(a.T) for name, a in arguments.items()})
+        return {
+            port.name: np.stack([np.broadcast_to(x, (count,)) for x in results[port.name]], axis=-1)
+            .astype(np.float64)
+            .reshape(count, *port.shape)
+            for port in program.outputs
+        }
+
+    return evaluate
+
+
+def numpy_backends(kernel: Kernel, folder: Path) -> tuple[Backend, Backend]:
+    """Both functions of the generated package, imported from ``folder``."""
+    package = load_package(folder / PACKAGE)
+    value, jacobians = getattr(package, kernel.name), getattr(package, f"{kernel.name}_jacobians")
+    names = [o.name for o in kernel.outputs]
+
+    def outputs(arguments: Arrays) -> dict[str, Array]:
+        result: Any = _called(value, kernel, arguments)
+        return dict(zip(names, result if len(names) > 1 else [result], strict=True))
+
+    def everything(arguments: Arrays) -> dict[str, Array]:
+        return _called(jacobians, kernel, arguments)._asdict()
+
+    return Backend("NumPy, value", False, outputs), Backend("NumPy", True, everything)
+
+
+def _called(function: Any, kernel: Kernel, arguments: Arrays) -> Any:
+    variables = [arguments[a.name] for a in kernel.variables]
+    return function(*variables, **{a.name: arguments[a.name] for a in kernel.given})
+
+
+def load_package(folder: Path) -> Any:
+    """Import a package from its folder and leave no trace of it in ``sys.modules``."""
+    name = folder.name
+    spec = importlib.util.spec_from_file_location(
+        name, folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
+    if spec is None or spec.loader is None:
+        raise ImportError(f"cannot import the generated package from {folder}")
+    before = {key: module for key, module in sys.modules.items() if _within(key, name)}
+    for key in before:
+        del sys.modules[key]
+    package = importlib.util.module_from_spec(spec)
+    sys.modules[name] = package
+    try:
+        spec.loader.exec_module(package)
+    finally:
+        for key in [key for key in sys.modules if _within(key, name)]:
+            del sys.modules[key]
+        sys.modules.update(before)
+    return package
+
+
+def _within(module: str, package: str) -> bool:
+    return module == package or module.startswith(f"{package}.")

@@ -1,0 +1,204 @@
+"""What the reference says at every sample, as arrays, and how far from it a computed result may be.
+
+Error bound: 2e-14 max(1, s), with s the largest absolute entry of the reference's Jacobian, or of the inputs
+for an output. Beyond a quarter turn on S2 it is divided by the sine of the angle: rounding of the stored unit
+vectors does that to any method. Samples that are ill-conditioned by their nature, and factors of users, which
+may be so anywhere, are moreover allowed the error that rounding makes in their program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.trace import Graph
+
+from . import reference
+from .draws import AnyFunction, Sample, Values, batch, generator_for
+from .rounding import rounding
+
+Array = NDArray[np.float64]
+
+BOUND = 2e-14
+#: Nearer to the antipode than this a direction on S2 has no useful tangent [rad].
+ANTIPODE = 0.99e-6
+EPS = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """An output or a Jacobian at all samples, entries flat, for both branches of logarithms at a half turn.
+
+    ``bound`` is absolute; ``lost`` is its part for the formula's own rounding, relative to the rest.
+    ``kept`` is false where the reference is not finite. ``quaternion``: q and -q are equal.
+    """
+
+    name: str
+    is_value: bool
+    expected: Array  # (2, samples, entries)
+    bound: Array  # (2, samples)
+    lost: Array  # (samples,)
+    kept: NDArray[np.bool_]  # (samples,)
+    quaternion: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """All blocks of a factor at its samples, and the reasons for samples that were left out."""
+
+    samples: tuple[Sample, ...]
+    blocks: tuple[Block, ...]
+    slack: Array
+    skipped: tuple[str, ...]
+
+    def scale(self, block: Block) -> Array:
+        """max(1, s) and the slack of S2, by sample."""
+        return block.bound[0] / BOUND
+
+
+def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: bool) -> Expected:
+    """Evaluate the reference. ``conditioned`` allows for the rounding in the program too."""
+    graph = function.graph
+    slack = np.array([_slack(graph, s.values) for s in samples])
+    branches = [_both_branches(graph, s) for s in samples]
+    rough = np.array([conditioned or s.conditioned for s in samples])
+    allowed = rounding(function.kernel.jacobians, batch(tuple(samples))) if rough.any() else {}
+    inputs = np.array([max(abs(x) for v in s.values.values() for x in v) for s in samples])
+    blocks: list[Block] = []
+    for name in branches[0][0] if branches else ():
+        is_value = name in dict(graph.outputs)
+        stacked = np.array([[pair[b][name] for pair in branches] for b in range(2)], dtype=np.float64)
+        size = inputs if is_value else np.abs(stacked).max(axis=2)
+        extra = np.where(rough, allowed.get(name, 0.0), 0.0)
+        plain = BOUND * np.maximum(1.0, size)
+        bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))
+        lost = extra / np.broadcast_to(plain, bound.shape).min(axis=0)
+        kept = np.isfinite(stacked).all(axis=(0, 2)) & np.isfinite(slack)
+        quaternion = is_value and dict(graph.outputs)[name].manifold.form.name in ("SO3", "SE3")
+        blocks.append(Block(name, is_value, stacked, bound, lost, kept, quaternion))
+    skipped = _reasons(samples, slack, blocks)
+    return Expected(tuple(samples), tuple(blocks), slack, skipped)
+
+
+def _reasons(samples: Sequence[Sample], slack: Array, blocks: Sequence[Block]) -> tuple[str, ...]:
+    reasons: list[str] = []
+    for k, sample in enumerate(samples):
+        if not np.isfinite(slack[k]):
+            reasons.append(f"{sample.case}: antipode on S2")
+        elif not all(block.kept[k] for block in blocks):
+            names = [block.name for block in blocks if not block.kept[k]]
+            reasons.append(f"{sample.case}: reference not finite in {', '.join(names)}")
+    return tuple(reasons)
+
+
+Entries = Mapping[str, Array]
+
+
+def _both_branches(graph: Graph, sample: Sample) -> tuple[Entries, Entries]:
+    """Flat entries of all outputs and Jacobians; the second time with the other logarithm at a half turn.
+
+    Both are the same unless the last digits of the inputs decide which logarithm it is.
+    """
+    principal = _entries(graph, sample.values, flip=False)
+    other = _outputs(graph, sample.values, flip=True)
+    same = all(np.array_equal(principal[name], x, equal_nan=True) for name, x in other.items())
+    if same or not _undecided(graph, sample, principal, other):
+        return principal, principal
+    return principal, _entries(graph, sample.values, flip=True)
+
+
+def _undecided(graph: Graph, sample: Sample, principal: Entries, other: Entries) -> bool:
+    """Whether the principal logarithm of some nearby inputs is nearer to ``other``."""
+    for near in _nearby(graph, sample):
+        for name, x in _outputs(graph, near, flip=False).items():
+            apart = [float(np.abs(x - side[name]).max()) for side in (principal, other)]
+            if apart[1] < apart[0]:
+                return True
+    return False
+
+
+def _nearby(graph: Graph, sample: Sample) -> Iterator[Values]:
+    """The inputs with every number moved by 16 units in the last place, one way or the other."""
+    generator = generator_for(graph.name, sample.case, "nearby")
+    for _ in range(16):
+        yield {
+            name: tuple(
+                x * (1 + 16 * EPS * s) for x, s in zip(v, generator.choice([-1.0, 1.0], len(v)), strict=True)
+            )
+            for name, v in sample.values.items()
+        }
+
+
+def _outputs(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
+    elements = reference.outputs(graph, values, flip=flip)
+    return {
+        name: np.array(reference.to_coords(node.manifold, elements[name]), dtype=np.float64)
+        for name, node in graph.outputs
+    }
+
+
+def _entries(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
+    entries = _outputs(graph, values, flip=flip)
+    jacobians: Any = reference.jacobians(graph, values, flip=flip)
+    for name, _ in graph.outputs:
+        for p in graph.parameters:
+            if p.variable:
+                rows = jacobians[name, p.name]
+                entries[f"{name}_D_{p.name}"] = np.array([float(x) for row in rows for x in row])
+    return entries
+
+
+def _slack(graph: Graph, values: Values) -> float:
+    """1/sine of the largest angle beyond a quarter turn between directions; infinite at the antipode."""
+    worst = 1.0
+    logs = [
+        n for n in graph.nodes() if n.operation.name == "local" and n.operands[0].manifold.form.name == "S2"
+    ]
+    if not logs:
+        return worst
+    evaluation = reference.evaluate(graph, values)
+    for node in logs:
+        x, y = (np.array([float(c) for c in evaluation[n]]) for n in node.operands)
+        sine, cosine = float(np.linalg.norm(np.cross(x, y))), float(x @ y)
+        if cosine < 0:
+            worst = max(worst, 1 / sine if sine > ANTIPODE else np.inf)
+    return worst
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Error of a block over its bound at every sample; NaN results count as infinitely wrong."""
+
+    block: Block
+    ratio: Array  # (samples,), 0 where nothing is compared
+    branch: NDArray[np.int_]
+
+
+def compare(expected: Expected, results: Mapping[str, Array]) -> tuple[Comparison, ...]:
+    """Compare computed arrays with the reference, on the branch of the logarithms that the code took."""
+    ratios = {b.name: _ratio(b, results[b.name]) for b in expected.blocks if b.name in results}
+    values = [ratios[b.name] for b in expected.blocks if b.is_value]
+    branch = np.argmin(np.max(values, axis=0), axis=0) if values else np.zeros(0, dtype=np.int_)
+    samples = np.arange(len(expected.samples))
+    return tuple(
+        Comparison(b, np.where(b.kept, ratios[b.name][branch, samples], 0.0), branch)
+        for b in expected.blocks
+        if b.name in ratios
+    )
+
+
+def _ratio(block: Block, computed: Array) -> Array:
+    """(2, samples)"""
+    flat = computed.reshape(1, computed.shape[0], -1)
+    with np.errstate(all="ignore"):
+        error = np.abs(flat - block.expected)
+        if block.quaternion:
+            other = np.concatenate([-flat[..., :4], flat[..., 4:]], axis=-1)
+            swapped = np.abs(other - block.expected)
+            error = np.where((swapped.max(axis=-1) < error.max(axis=-1))[..., None], swapped, error)
+        ratio = error.max(axis=-1) / block.bound
+    return np.where(np.isfinite(ratio), ratio, np.inf)

@@ -1,0 +1,84 @@
+"""All checks of one factor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .accuracy import accuracy, agreement
+from .backends import Backend, Workspace, backends
+from .differences import differences
+from .domain import domain
+from .draws import AnyFunction, Samples, batch, draw_samples
+from .expected import compare, expect
+from .report import Check, FactorReport
+from .taylor import taylor
+
+Array = NDArray[np.float64]
+
+#: The back end whose Jacobians and outputs the checks by differences and remainders take.
+TAKEN = "NumPy"
+#: Samples that are also given one at a time: NumPy computes scalars by other code than arrays.
+SINGLE = 4
+
+
+def check_factor(
+    function: AnyFunction, place: Workspace, samples: int, seed: int, *, conditioned: bool
+) -> FactorReport:
+    """Draw ``samples`` samples and run every check. ``conditioned`` as in :func:`expect`."""
+    drawn = draw_samples(function, samples, seed)
+    if not drawn.inside:
+        return FactorReport(function.name, (_nothing(function, drawn),))
+    computed = backends(function.kernel, place)
+    results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
+    expected = expect(function, drawn.inside, conditioned=conditioned)
+    taken = results[TAKEN]
+    branches = compare(expected, taken)[0].branch.tolist()
+    values = next(b for b in computed if b.name == f"{TAKEN}, value")
+    singles = {
+        f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
+    }
+    usable = np.all([block.kept for block in expected.blocks], axis=0)
+    smooth = [k for k in range(len(drawn.inside)) if usable[k]]
+    kept = [drawn.inside[k] for k in smooth]
+    jacobians = {name: array[smooth] for name, array in taken.items()}
+    allowed = {b.name: b.bound[0][smooth] for b in expected.blocks if not b.is_value}
+    return FactorReport(
+        function.name,
+        (
+            *accuracy(expected, results, drawn.refused),
+            agreement(expected, results | singles),
+            domain(function, drawn, computed, seed),
+            differences(function.graph, kept, values.evaluate, jacobians),
+            taylor(function.graph, kept, jacobians, [branches[k] for k in smooth], allowed),
+            _compiled(place),
+        ),
+    )
+
+
+def _one_at_a_time(backend: Backend, drawn: Samples) -> Mapping[str, Array]:
+    """The first ``SINGLE`` samples one by one, the rest as a batch."""
+    arguments = batch(drawn.inside)
+    results = dict(backend.evaluate(arguments))
+    for k in range(min(SINGLE, len(drawn.inside))):
+        for name, array in backend.evaluate({n: a[k] for n, a in arguments.items()}).items():
+            results[name] = results[name].copy()
+            results[name][k] = array
+    return results
+
+
+def _nothing(function: AnyFunction, drawn: Samples) -> Check:
+    messages = "; ".join(d.message for d in function.graph.domain)
+    note = (
+        f"no sample inside the domain ({messages}) was found in {len(drawn.refused)} cases; "
+        "draw inside it with @factor(sample=...)"
+    )
+    return Check("value", False, float("nan"), 0.0, "", "", 0, drawn.refused, note)
+
+
+def _compiled(place: Workspace) -> Check:
+    note = "" if place.library else "not checked: no C compiler (set CC, or install cc, gcc or clang)"
+    checked = place.library is not None
+    return Check("C", True, 0.0, 0.0, "", place.compiler, int(checked), note=note, checked=checked)

@@ -1,0 +1,108 @@
+"""Verifying many factors, on several processes where that helps. The result does not depend on how many."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from typing import TypeGuard
+
+from liegen.define import Function
+
+from .backends import Workspace, workspace
+from .draws import AnyFunction
+from .factor import check_factor
+from .report import FactorReport, Report
+
+#: Finds the factors again in another process: a picklable callable, such as ``partial(load, "factors.py")``.
+Reload = Callable[[], Mapping[str, AnyFunction]]
+#: Told after each factor: its report, how many are done, how many there are.
+Progress = Callable[[FactorReport, int, int], None]
+
+SAMPLES = 128
+#: Fewer factors than this for each process are not worth starting it.
+WORTHWHILE = 3
+
+
+def library() -> dict[str, AnyFunction]:
+    """The built-in factors by name, in the library's order."""
+    from liegen import library as home
+
+    return {value.name: value for value in vars(home).values() if _is_function(value)}
+
+
+def _is_function(value: object) -> TypeGuard[AnyFunction]:
+    return isinstance(value, Function)
+
+
+def verify(
+    functions: Sequence[AnyFunction],
+    *,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    progress: Progress | None = None,
+    reload: Reload | None = None,
+    workers: int | None = None,
+) -> Report:
+    """Run every check of every factor.
+
+    ``samples`` are drawn for each factor. ``reload`` lets other processes load factors that are not the
+    library's; without it those are verified in this process. ``workers`` is their number, by default one for
+    each core.
+    Raises ToolError when a compiler is there but refuses the generated C.
+    """
+    known = library()
+    builtin = all(known.get(f.name) is f for f in functions)
+    source: Reload | None = library if builtin and reload is None else reload
+    strict = {f.name for f in functions if known.get(f.name) is f}
+    count = min(workers or _cores(), len(functions) // WORTHWHILE) if source else 1
+    with workspace([f.kernel for f in functions]) as place:
+        jobs = [(f.name, samples, seed, f.name not in strict) for f in functions]
+        found = (
+            _parallel(source, place, jobs, count, progress)
+            if source and count > 1
+            else _serial(functions, place, jobs, progress)
+        )
+        compiler = place.compiler
+    return Report(tuple(found), samples, seed, compiler)
+
+
+Job = tuple[str, int, int, bool]
+
+
+def _serial(
+    functions: Sequence[AnyFunction], place: Workspace, jobs: Sequence[Job], progress: Progress | None
+) -> list[FactorReport]:
+    reports: list[FactorReport] = []
+    for function, (_, samples, seed, conditioned) in zip(functions, jobs, strict=True):
+        reports.append(check_factor(function, place, samples, seed, conditioned=conditioned))
+        if progress:
+            progress(reports[-1], len(reports), len(jobs))
+    return reports
+
+
+def _parallel(
+    source: Reload, place: Workspace, jobs: Sequence[Job], count: int, progress: Progress | None
+) -> list[FactorReport]:
+    """Worker processes start afresh, so they hold no locks or threads of this one."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(count, mp_context=context) as pool:
+        futures = {pool.submit(_work, source, place, job): job[0] for job in jobs}
+        reports: dict[str, FactorReport] = {}
+        for future in as_completed(futures):
+            report = future.result()
+            reports[futures[future]] = report
+            if progress:
+                progress(report, len(reports), len(jobs))
+    return [reports[name] for name, *_ in jobs]
+
+
+def _work(source: Reload, place: Workspace, job: Job) -> FactorReport:
+    name, samples, seed, conditioned = job
+    return check_factor(source()[name], place, samples, seed, conditioned=conditioned)
+
+
+def _cores() -> int:
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
