@@ -30,7 +30,7 @@ class Summary:
         """``x: SE3, y: SE3, *, z: SE3``."""
         variables = [f"{k}: {v}" for k, v in self.variables.items()]
         given = [f"{k}: {v}" for k, v in self.given.items()]
-        return ", ".join([*variables, *(["*", *given] if given else [])])
+        return ", ".join([*variables, *(["*"] if variables and given else []), *given])
 
     @property
     def results(self) -> str:
