@@ -10,7 +10,8 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "trace", "differentiate", "program", "kernel", "derive",
-    "define", "samples", "library", "modules", "sources", "emit", "native", "verify", "bench", "explain", "cli",
+    "define", "samples", "library", "modules", "sources", "emit", "native", "verify", "bench", "explain",
+    "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")
