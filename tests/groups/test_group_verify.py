@@ -104,6 +104,21 @@ def test_a_function_that_stores_before_it_loads_fails(name, tmp_path):
         assert check.passed == (folder == "right" or not same_size)
 
 
+@needs_compiler
+def test_column_major_matrices(tmp_path):
+    kernel = FUNCTIONS["se3_Jl"].kernel
+    for path, text in render([kernel], ["c"], package="lie", regenerate="-", layout="col").items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text)
+    library, _ = compile_c(tmp_path / "c", tmp_path)
+    d, rows, columns = np.array([0.1, -0.2, 0.3, 1, 2, 3]), np.zeros((6, 6)), np.zeros((6, 6))
+    for name, out in (("lie_se3_Jl", rows), ("lie_se3_Jl_cm", columns)):
+        ctypes.CDLL(str(library))[name](*(ctypes.c_void_p(a.ctypes.data) for a in (d, out)))
+    np.testing.assert_array_equal(rows, columns.T)
+    np.testing.assert_array_equal(rows, np.asarray(FUNCTIONS["se3_Jl"](d)))
+    assert np.abs(rows - rows.T).max() > 0.1
+
+
 def test_headers_say_what_may_overlap_and_promise_no_restrict():
     text = render([FUNCTIONS["se3_retract"].kernel], ["c"], package="lie", regenerate="-")
     header = text["c/se3_retract.h"]
