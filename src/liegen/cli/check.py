@@ -49,7 +49,7 @@ def check(directory: str, source: str | None) -> None:
 
 def _manifests(folder: Path) -> list[dict[str, Any]]:
     """Every manifest in the folder. Raises OutputError where there is none."""
-    from liegen.emit.render import FORMAT
+    from liegen.emit.rendering import FORMAT
     from liegen.errors import OutputError
 
     found: list[dict[str, Any]] = []
