@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 import shlex
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +16,7 @@ import click
 from .shared import chosen, names_option, source_argument, table, tracked
 
 if TYPE_CHECKING:
+    from liegen.kernel import Kernel
     from liegen.sources import AnyFunction
 
 TARGETS = ("numpy", "c")
@@ -66,12 +69,17 @@ def requested(
     return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout)
 
 
+def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
+    """The kernels; each is derived at its first use."""
+    return [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+
+
 def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str) -> dict[str, str]:
     """Derive, check and lay out; nothing is written."""
     from liegen.emit import check_names, render
     from liegen.verify import check_finite
 
-    kernels = [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+    kernels = derived(functions)
     check_names(kernels, request.package)
     for function in functions:
         check_finite(function)
@@ -112,7 +120,13 @@ def generate(
 
     request = requested(source, names, targets, package, layout)
     functions = chosen(source, request.names)
+    for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
+        importlib.import_module(f"liegen.{module}")
+    times = [time.perf_counter()]
+    derived(functions)
+    times.append(time.perf_counter())
     files = rendered(request, functions, request.header)
+    times.append(time.perf_counter())
     done = write_tree(files, Path(output))
     table(
         ("factor", "operations", "with Jacobians"),
@@ -122,6 +136,10 @@ def generate(
     click.echo()
     for path in done.removed:
         click.echo(f"removed {Path(output, path)}")
+    many = f"{len(functions)} factors" if len(functions) > 1 else "1 factor"
+    click.echo(
+        f"derived {many} in {times[1] - times[0]:.2f} s, checked and rendered in {times[2] - times[1]:.2f} s"
+    )
     folders = sorted({str(Path(output, path).parent) for path in files if "/" in path})
     click.echo(
         f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date) to {' and '.join(folders)}"
