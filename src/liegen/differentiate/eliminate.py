@@ -17,7 +17,7 @@ Edges = Mapping[tuple[int, int], Chain]
 
 @dataclass(frozen=True)
 class Strategy:
-    """In which order inner vertices are eliminated (they come in the graph's), and how chains are multiplied."""
+    """In which order inner vertices are eliminated (given in the graph's), and how chains are multiplied."""
 
     order: Callable[[Sequence[int]], Sequence[int]]
     multiply: Callable[[Chain], Matrix]
