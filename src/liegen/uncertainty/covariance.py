@@ -66,18 +66,30 @@ def covariance(a: ArrayLike, n: int | None = None, name: str = "S") -> Array:
             f"{here()}: {_element(name, tuple(batch))} is not symmetric: entry [{i}, {j}] is {S[index]:.9g}, "
             f"entry [{j}, {i}] is {S[(*batch, j, i)]:.9g}; if that is rounding give (S + S.T) / 2"
         )
-    smallest = np.linalg.eigvalsh((correlation + np.swapaxes(correlation, -1, -2)) / 2)[..., 0]
-    least = S.shape[-1] * np.finfo(np.float64).eps
-    if np.any(smallest <= least):
-        index = _place(smallest <= least)
-        raise UncertaintyError(
-            f"{here()}: {_element(name, index)} is not positive definite: the smallest eigenvalue of its "
-            f"correlation matrix is {smallest[index]:.6g}, it must exceed {least:.2g}; {_EXACT}"
-        )
+    _need_positive((correlation + np.swapaxes(correlation, -1, -2)) / 2, name)
     return (S + np.swapaxes(S, -1, -2)) / 2
 
 
 _EXACT = "give a direction that is known exactly a small variance, one that is unknown a large variance"
+
+
+def _need_positive(correlation: Array, name: str) -> None:
+    values, vectors = np.linalg.eigh(correlation)
+    n = correlation.shape[-1]
+    least = n * np.finfo(np.float64).eps
+    if np.any(values[..., 0] <= least):
+        index = _place(values[..., 0] <= least)
+        value, direction = values[index][0], vectors[index][:, 0]
+        along = ", ".join(f"{x:.2g}" for x in direction)
+        cure = (
+            _EXACT
+            if value > -16 * least
+            else "check the entries off its diagonal: order, frames, a transposed block"
+        )
+        raise UncertaintyError(
+            f"{here()}: {_element(name, index)} is not positive definite: eigenvalue 0 of {n} of its "
+            f"correlation matrix is {value:.6g}, along ({along}); it must exceed {least:.2g}; {cure}"
+        )
 
 
 def propagate(J: ArrayLike, S: ArrayLike) -> Array:
