@@ -36,8 +36,21 @@ def hat(G, d):
 
 
 def exp(G, d):
-    """Matrices (..., m, m) of the exponentials of d (..., n)."""
-    return expm(hat(G, d))
+    """Matrices (..., m, m) of the exponentials of d (..., n): SciPy's, a faster series for many."""
+    M = hat(G, d)
+    return series(M) if M.size > 10_000 else expm(M)
+
+
+def series(M):
+    """exp(M) of many small matrices: Taylor to M^18, squared six times."""
+    M = M / 64
+    total, term = np.zeros_like(M) + np.eye(M.shape[-1]), np.zeros_like(M) + np.eye(M.shape[-1])
+    for k in range(1, 19):
+        term = term @ M / k
+        total = total + term
+    for _ in range(6):
+        total = total @ total
+    return total
 
 
 def vee(G, m):
@@ -117,14 +130,14 @@ def draw(S, rng, size):
 
 
 def misfit(samples, S):
-    """How far the samples' second moment is from S: the largest |log| of the eigenvalues of S^-1 times it."""
+    """Largest |log| of the eigenvalues of S^-1 times the second moment: 0 when they agree."""
     values, vectors = np.linalg.eigh(S)
     w = samples @ (vectors / np.sqrt(values))
     return float(np.max(np.abs(np.log(np.linalg.eigvalsh(w.T @ w / len(w))))))
 
 
 def bound(size):
-    """For ``misfit``: eigenvalues of 6 whitened coordinates spread by 2 sqrt(6 / size); half as much again."""
+    """For ``misfit``: eigenvalues of 6 whitened coordinates spread by 2 sqrt(6 / size); half more."""
     return 3 * math.sqrt(6 / size)
 
 
