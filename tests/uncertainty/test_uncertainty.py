@@ -1,5 +1,7 @@
 """The public functions on all groups, batches, and what they refuse."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import uncertainty_reference as ref
@@ -255,3 +257,15 @@ def test_dead_reckoning_of_nothing_is_the_start():
     close(np.asarray(track.poses), [[np.cos(0.3), np.sin(0.3)]], 1e-15)
     close(track.covariances, [[[2.0]]], 0)
     assert uncertainty.dead_reckoning(R3.identity(), np.ones((2, 3)), 0.5).covariances is None
+
+
+def test_the_guide_runs(capsys):
+    """The code of docs/uncertainty.md, and what it says about its figures."""
+    text = (Path(__file__).resolve().parents[2] / "docs" / "uncertainty.md").read_text()
+    code = "\n".join(line[4:] for line in text.splitlines() if line.startswith("    "))
+    names = {}
+    exec(code, names)
+    assert np.max(np.sqrt(np.diag(names["S_x1"]))) == pytest.approx(0.18, abs=0.01)
+    assert np.trace(names["relative"]) == pytest.approx(np.trace(names["S"]), rel=1e-9)
+    assert np.trace(names["wrong"]) > 5 * np.trace(names["S"])
+    assert "R3(" in capsys.readouterr().out
