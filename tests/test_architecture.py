@@ -9,7 +9,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "algebra", "coefficients", "manifolds", "uncertainty", "trace", "differentiate", "program", "kernel", "derive",
+    "errors", "algebra", "coefficients", "manifolds", "uncertainty", "trace", "differentiate", "program",
+    "kernel", "derive",
     "define", "samples", "library", "emit", "sources", "explain", "verify", "bench", "cli",
 )  # fmt: skip
 #: The decorators derive at first use, so define sits beside derive; the lazy package root names everything.
