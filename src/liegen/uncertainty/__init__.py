@@ -21,14 +21,14 @@ from .covariance import propagate as propagate
 from .covariance import sqrt_info as sqrt_info
 from .covariance import squared_error as squared_error
 from .covariance import whiten as whiten
-from .track import Track as Track
-from .track import dead_reckoning as dead_reckoning
 from .estimate import posterior as posterior
 from .estimate import sample as sample
 from .order import from_order as from_order
 from .order import from_ros as from_ros
 from .order import to_order as to_order
 from .order import to_ros as to_ros
+from .track import Track as Track
+from .track import dead_reckoning as dead_reckoning
 from .transport import body_to_world as body_to_world
 from .transport import of_between as of_between
 from .transport import of_compose as of_compose
