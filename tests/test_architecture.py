@@ -5,13 +5,15 @@ from pathlib import Path
 
 import pytest
 
+import liegen
+
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "algebra", "coefficients", "manifolds", "trace", "differentiate", "program", "kernel", "derive",
-    "define", "samples", "library", "modules", "sources", "emit", "native", "verify", "bench", "explain",
-    "cli",
+    "errors", "algebra", "coefficients", "manifolds", "uncertainty", "trace", "differentiate", "program",
+    "kernel", "derive", "define", "samples", "library", "modules", "sources", "emit", "native", "verify",
+    "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")
@@ -65,3 +67,15 @@ def test_files_are_small():
     }
     assert long == {}
     assert templates == {}
+
+
+def test_no_module_shares_a_name_with_what_its_package_offers():
+    for init in SOURCE.rglob("__init__.py"):
+        folder = init.parent
+        modules = {p.stem for p in folder.glob("*.py")}
+        modules |= {p.parent.name for p in folder.glob("*/__init__.py")}
+        statements = [n for n in ast.walk(ast.parse(init.read_text())) if isinstance(n, ast.ImportFrom)]
+        offered = {a.asname or a.name for n in statements if n.module for a in n.names}
+        assert modules & offered == set(), folder.name
+    assert callable(liegen.factor)
+    assert set(liegen._HOME) & {p.stem for p in SOURCE.glob("*.py")} == set()

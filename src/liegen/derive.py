@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from liegen.algebra.linear import Matrix
-from liegen.differentiate import ORDERS, Expressions, expressions, jacobians
+from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.kernel import Argument, Kernel, Output, PassCount
 from liegen.manifolds import Manifold, ManifoldForm, MatrixValue, Vector
 from liegen.program import Port, Program
@@ -18,17 +18,17 @@ from liegen.trace import Graph, formula, jacobian_formulas
 def derive(graph: Graph, *, in_place: bool = False) -> Kernel:
     """Differentiate, lower and optimise.
 
-    Every order of elimination is tried; the program with the fewest operations after all passes is kept, the
-    first among equals. ``in_place`` as in :class:`Kernel`.
+    Every strategy of elimination is tried; the program with the fewest operations after all passes is kept,
+    the first among equals. ``in_place`` as in :class:`Kernel`.
     """
     values = expressions(graph)
     value, _ = optimise(lowered(graph, values, {}))
     candidates = [
-        (order, *optimise(lowered(graph, values, jacobians(graph, values, rule))))
-        for order, rule in ORDERS.items()
+        (name, *optimise(lowered(graph, values, jacobians(graph, values, strategy))))
+        for name, strategy in STRATEGIES.items()
     ]
-    order, best, rows = min(candidates, key=lambda c: c[1].operations)
-    first = f"lower, {order} order" if any(p.variable for p in graph.parameters) else "lower"
+    name, best, rows = min(candidates, key=lambda c: c[1].operations)
+    first = f"lower, {name} order" if any(p.variable for p in graph.parameters) else "lower"
     passes = (PassCount(first, rows[0][1]), *(PassCount(*row) for row in rows[1:]))
     return Kernel(
         name=graph.name,

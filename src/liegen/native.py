@@ -11,7 +11,7 @@ from pathlib import Path
 
 from liegen.errors import ToolError
 
-_COMPILERS = ("cc", "gcc", "clang")
+COMPILERS = ("cc", "gcc", "clang")
 
 
 def find_compiler() -> tuple[str, ...]:
@@ -19,7 +19,7 @@ def find_compiler() -> tuple[str, ...]:
     named = tuple(shlex.split(os.environ.get("CC", "")))
     if named and shutil.which(named[0]):
         return named
-    return next(((name,) for name in _COMPILERS if shutil.which(name)), ())
+    return next(((name,) for name in COMPILERS if shutil.which(name)), ())
 
 
 def compile_shared(sources: Sequence[Path], library: Path, flags: Sequence[str]) -> None:

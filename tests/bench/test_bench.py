@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from liegen.bench import compare
-from liegen.cli.app import app
+from liegen.cli.application import app
 from liegen.library import between_se2, projection_cal3_s2
 from liegen.native import find_compiler
 

@@ -28,8 +28,8 @@ from liegen.program.passes import (
     schedule,
     signs,
 )
-from liegen.program.passes.reciprocals import cost
-from liegen.program.passes.schedule import live_values
+from liegen.program.passes.divisions import cost
+from liegen.program.passes.scheduling import live_values
 
 
 def optimised(program):

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from liegen import R1, SE3, abs, factor, library, log, require, sqrt
+from liegen import R1, SE3, abs, factor, library, log, native, require, sqrt
 from liegen.errors import DomainError, ToolError
 from liegen.program import Program
 from liegen.program.rewrite import Builder
 from liegen.verify import backends as module
-from liegen.verify import check_finite, compiled, verify
+from liegen.verify import check_finite, verify
 from liegen.verify.backends import program_evaluator
 from liegen.verify.differences import differences
 from liegen.verify.draws import batch, draw_samples, schedule
@@ -78,7 +78,7 @@ def test_verify_fails_for_a_program_that_is_one_part_in_1e10_off(monkeypatch):
 
 
 def test_without_a_compiler_c_is_reported_as_not_checked(monkeypatch):
-    monkeypatch.setattr(compiled, "COMPILERS", ("no-such-compiler",))
+    monkeypatch.setattr(native, "COMPILERS", ("no-such-compiler",))
     monkeypatch.delenv("CC", raising=False)
     report = verify([library.prior_so2], samples=10)
     (check,) = [c for c in report.factors[0].checks if c.name == "C"]

@@ -2,5 +2,5 @@
 
 from __future__ import annotations
 
-from .app import app as app
-from .app import main as main
+from .application import app as app
+from .application import main as main

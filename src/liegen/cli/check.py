@@ -49,7 +49,7 @@ def check(directory: str, source: str | None) -> None:
 
 def _manifests(folder: Path) -> list[tuple[Path, dict[str, Any]]]:
     """Every manifest in the folder and right below it, with its folder. Raises OutputError without any."""
-    from liegen.emit.render import FORMAT
+    from liegen.emit.rendering import FORMAT
     from liegen.errors import OutputError
 
     found: list[tuple[Path, dict[str, Any]]] = []

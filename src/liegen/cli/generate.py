@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 import shlex
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -76,12 +78,17 @@ def requested(
     return Request(source, unique[0], wanted, called, layout, unique[1])
 
 
+def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
+    """The kernels; each is derived at its first use."""
+    return [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+
+
 def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str) -> dict[str, str]:
     """Derive, check and lay out; nothing is written."""
     from liegen.emit import check_names, render
     from liegen.verify import check_finite
 
-    kernels = [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+    kernels = derived(functions)
     check_names(kernels, request.package)
     for function in functions:
         check_finite(function)
@@ -130,7 +137,13 @@ def generate(
 
     request = requested(source, names, targets, package, layout, groups)
     functions = chosen(source, request.names, groups)
+    for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
+        importlib.import_module(f"liegen.{module}")
+    times = [time.perf_counter()]
+    derived(functions)
+    times.append(time.perf_counter())
     files = rendered(request, functions, request.header)
+    times.append(time.perf_counter())
     done = write_tree(files, Path(output))
     table(
         ("factor", "operations", "with Jacobians"),
@@ -140,6 +153,10 @@ def generate(
     click.echo()
     for path in done.removed:
         click.echo(f"removed {Path(output, path)}")
+    many = f"{len(functions)} factors" if len(functions) > 1 else "1 factor"
+    click.echo(
+        f"derived {many} in {times[1] - times[0]:.2f} s, checked and rendered in {times[2] - times[1]:.2f} s"
+    )
     folders = sorted({str(Path(output, path).parent) for path in files if "/" in path})
     click.echo(
         f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date) to {' and '.join(folders)}"

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from .names import check_names as check_names
-from .render import LAYOUTS as LAYOUTS
-from .render import render as render
+from .rendering import LAYOUTS as LAYOUTS
+from .rendering import render as render
 from .target import Options as Options
 from .target import Sheet as Sheet
 from .target import Target as Target

@@ -11,7 +11,7 @@ from typing import Any
 
 from liegen.errors import OutputError
 
-from .render import FORMAT
+from .rendering import FORMAT
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 from liegen.errors import DefinitionError
 
 from .operations import Operations
-from .passes.dead import dead
+from .passes.dead_code import dead
 from .program import Port, Program, Requirement
 
 ca: Any = importlib.import_module("casadi")  # ships no type information

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .formula import formula as formula
+from .formulas import formula as formula
 from .graph import Domain as Domain
 from .graph import Graph as Graph
 from .graph import Parameter as Parameter

@@ -16,7 +16,7 @@ from liegen.manifolds import SO2, Leaf, Node, Vector
 from liegen.manifolds.additive_form import AdditiveForm
 from liegen.manifolds.form import GroupForm
 
-from .formula import free_names, named_values, texts_of
+from .formulas import free_names, named_values, texts_of
 from .graph import Graph
 
 #: Signs and factors of a product; no factors stand for the identity.

@@ -11,13 +11,13 @@ from collections.abc import Callable
 
 from liegen.program.program import Program
 
-from .cse import cse
-from .dead import dead
-from .factor import factor
-from .fold import fold
-from .reciprocals import reciprocals
-from .schedule import schedule
-from .signs import signs
+from .dead_code import dead
+from .divisions import reciprocals
+from .factoring import factor
+from .folding import fold
+from .scheduling import schedule
+from .sign_sharing import signs
+from .subexpressions import cse
 
 Pass = Callable[[Program], Program]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from liegen.program.program import Instruction, Program
 from liegen.program.rewrite import rebuilt, use_counts
 
-from .dead import dead
-from .fold import power_of_two
+from .dead_code import dead
+from .folding import power_of_two
 
 
 def factor(program: Program) -> Program:

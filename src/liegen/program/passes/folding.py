@@ -11,7 +11,7 @@ from typing import Any
 from liegen.program.program import Instruction, Program
 from liegen.program.rewrite import Builder, rebuilt
 
-from .dead import dead
+from .dead_code import dead
 
 
 def fold(program: Program) -> Program:

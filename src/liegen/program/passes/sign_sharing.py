@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from liegen.program.program import Program, Requirement
 from liegen.program.rewrite import Builder
 
-from .dead import dead
+from .dead_code import dead
 from .orientation import Kind, Node, orientations
 
 _KINDS: Mapping[str, Kind] = {
