@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from liegen.errors import DefinitionError
-from liegen.manifolds import Calibration, Leaf, Manifold, Node
+from liegen.manifolds import Calibration, Leaf, Manifold, Node, Value, Vector
 from liegen.manifolds.pose import Pose
+from liegen.manifolds.rotation import Rotation
 
 from .formulas import Text, show
-from .frame_names import Declared, Kind, is_map
+from .frame_names import Declared, Kind, is_map, needed
 from .frame_report import FrameReport
 from .frame_rules import rule
 from .frame_step import HATCH, Step
@@ -37,7 +38,7 @@ def check_frames(graph: Graph) -> FrameReport:
         if id(node) not in values:
             values[id(node)] = _of_node(node, values, solver, graph, inside)
     for call in graph.calls:
-        if call.checked and all(id(a.node) in values for a in call.arguments):
+        if call.checked:
             _check_call(call, values, solver, graph)
     _coincide_at_zero(graph, values, solver)
     return _report(graph, values, solver)
@@ -49,7 +50,7 @@ def _of_parameter(p: Parameter) -> Framed:
     if is_map(p.manifold):
         camera = issubclass(p.manifold, Calibration)
         return sought("", "" if camera else f"the body frame of {p.name}", is_map=True)
-    return sought(f"the frame of {p.name}" if p.manifold.form.dim > 1 else "", is_map=False)
+    return sought(f"the frame of {p.name}" if needed(p.manifold) else "", is_map=False)
 
 
 def _declared(d: Declared, manifold: type[Manifold], frames: list[Frame]) -> Framed:
@@ -99,8 +100,11 @@ def _of_node(
         where = f"in {call.name} ({node.site}), " if call else ""
         raise DefinitionError(f"{site}: {graph.name}: {where}{text}: {message}")
 
-    def route(text: str, frame: Frame, kind: Kind, to: Frame) -> str | None:
-        return _route(graph, solver, text, (frame, to), kind)
+    def route(k: int, kind: Kind, to: Frame) -> str | None:
+        text, frame = say()[k], values[id(node.operands[k])].outer
+        return _route(
+            graph.parameters, node.operands[k].manifold, text, (solver.name(frame), solver.name(to)), kind
+        )
 
     def say() -> tuple[str, ...]:
         texts = _texts(graph)
@@ -125,19 +129,26 @@ def _receiver(text: Text) -> str:
     return text.text if text.strength >= _DOTS.strength else f"({text.text})"
 
 
-def _route(graph: Graph, solver: Solver, text: str, way: tuple[Frame, Frame], kind: Kind) -> str | None:
-    """How a declared pose or rotation moves a vector from one frame to the other."""
+def _route(
+    parameters: Iterable[Parameter],
+    moved: type[Value],
+    text: str,
+    way: tuple[str | None, str | None],
+    kind: Kind,
+) -> str | None:
+    """How a declared pose or rotation takes a vector from one frame to the other."""
     free = kind in (Kind.FREE, Kind.DIFFERENCE, Kind.TANGENT)
-    start, end = (solver.name(f) for f in way)
-    for p in graph.parameters:
-        if p.frames is None or p.frames.kind is not Kind.MAP or issubclass(p.manifold, Calibration):
+    for p in parameters:
+        pose, rotation = issubclass(p.manifold, Pose), issubclass(p.manifold, Rotation)
+        form: Any = p.manifold.form
+        space = form.rotation.space if pose else form.space if rotation else 0
+        if p.frames is None or not issubclass(moved, Vector) or moved.form.dim != space:
             continue
-        pose = issubclass(p.manifold, Pose)
-        turn = f"{p.name}.rotation" if pose else p.name
-        if p.frames.names == (end, start):
-            return f"{p.name}.transform_from({text})" if pose and not free else f"{turn} @ {text}"
-        if p.frames.names == (start, end):
-            return f"{p.name}.transform_to({text})" if pose and not free else f"{turn}.unrotate({text})"
+        turn, moves = f"{p.name}.rotation" if pose else p.name, pose and not free
+        if p.frames.names == way[::-1]:
+            return f"{p.name}.transform_from({text})" if moves else f"{turn} @ {text}"
+        if p.frames.names == way:
+            return f"{p.name}.transform_to({text})" if moves else f"{turn}.unrotate({text})"
     return None
 
 
@@ -145,7 +156,7 @@ def _check_call(call: Call, values: Mapping[int, Framed], solver: Solver, graph:
     """What is given to a factor with declared frames has frames that fit together as they do there."""
     scope: dict[str, Frame] = {}
     for a in call.arguments:
-        if a.frames is None:
+        if a.frames is None or id(a.node) not in values:  # a constant, or not used
             continue
         wanted = [scope.setdefault(name, Sought(untyped=False)) for name in a.frames.names]
         given = values[id(a.node)]

@@ -19,8 +19,10 @@ Rule = Callable[[Step], Framed]
 
 def _compose(s: Step) -> Framed:
     a, b = s.operands
+    moves = s.node.operands[1].operation.name == "exp"  # a tangent at the other side
     s.need(
         (0, "inner"), (1, "outer"),
+        *([((0, "outer"), (1, "outer"), "{1} @ {0}")] if moves else []),
         ((0, "inner"), (1, "inner"), "{0} @ {1}.inverse()"),
         ((0, "outer"), (1, "outer"), "{0}.inverse() @ {1}"),
         ((0, "outer"), (1, "inner"), "{1} @ {0}"),
@@ -135,7 +137,7 @@ def _one_frame(s: Step) -> Framed:
 
 def _differ(s: Step, i: int, k: int) -> NoReturn:
     (a, b), (x, y) = (s.operands[i], s.operands[k]), (s.texts[i], s.texts[k])
-    ways = (s.route(y, b.outer, b.kind, a.outer), s.route(x, a.outer, a.kind, b.outer))
+    ways = (s.route(k, b.kind, a.outer), s.route(i, a.kind, b.outer))
     # rather an argument than what was computed
     route = next(filter(None, ways if not s.node.operands[k].operands else ways[::-1]), None)
     cure = f"write {route}" if route else s.cure(None)

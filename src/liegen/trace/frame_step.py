@@ -28,8 +28,8 @@ class Step:
     solver: Solver
     say: Callable[[], tuple[str, ...]]  # the operands' texts, ready to take a dot
     refuse: Callable[[str], NoReturn]
-    #: (vector's text, its frame, kind, the frame where it is needed) -> how to move it with what is declared
-    route: Callable[[str, Frame, Kind, Frame], str | None]
+    #: (operand, what it is, the frame where it is needed) -> how to move it with what is declared
+    route: Callable[[int, Kind, Frame], str | None]
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -55,7 +55,10 @@ class Step:
             for place in (a, b)
         )
         write = next((t for p, q, t in repairs if self.solver.same(self.at(p), self.at(q))), None)
-        self.refuse(f"{said}; {self.cure(write)}")
+        moved = None
+        if write is None and b[1] == "frame":
+            moved = self.route(b[0], self.kind(b[0]), self.at(a))
+        self.refuse(f"{said}; {f'write {moved}' if moved else self.cure(write)}")
 
     def cure(self, repair: str | None) -> str:
         """What to write instead."""
