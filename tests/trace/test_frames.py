@@ -88,7 +88,8 @@ ARGUMENTS = {
     "R_AB": SO3, "R_BC": SO3, "R_CB": SO3, "Q_AB": SO2, "Q_BC": SO2, "q_AB": SO3, "p_A": R3, "p2_A": R3,
     "p_B": R3, "p_C": R3, "v_A": R3, "v2_A": R3, "v_B": R3, "d_A": R3, "d_B": R3, "t_AB": R3, "l_A": R2,
     "l_B": R2, "u_B": R2, "xi_A": R6, "xi_B": R6, "n_A": S2, "n_B": S2, "m_A": S2, "b_A": SO2, "b_B": SO2,
-    "K_IC": Cal3_S2, "D_IC": Cal3DS2, "z_I": R2, "z_J": R2, "x": SE3, "y": SE3, "r": SO3, "q": R3, "w": R3, "n": S2,
+    "K_IC": Cal3_S2, "D_IC": Cal3DS2, "z_I": R2, "z_J": R2, "x": SE3, "y": SE3, "r": SO3, "q": R3, "w": R3,
+    "n": S2,
     "K": Cal3_S2, "s": R1, "xi": R6, "c": R4,
 }  # fmt: skip
 NAMESPACE = {"cross": cross, "dot": dot, "norm": norm, "stack": stack, "where": where, "liegen": liegen}
@@ -638,3 +639,27 @@ def test_headers_state_frames_of_typed_factors_only():
 
     assert "Frames:" not in header(between_se3)
     assert between_se3.frames.noise == "the body frame of z"
+
+
+# the documentation
+
+DOCUMENT = (Path(__file__).resolve().parents[2] / "docs" / "frames.md").read_text(encoding="utf-8")
+
+
+def test_the_document_shows_what_is_printed():
+    code, printed = DOCUMENT.partition("```python\n")[2], DOCUMENT.partition("```text\n")[2]
+    space = {"factor": factor, "SE3": SE3}
+    exec(code.partition("```")[0], space)
+    assert printed.partition("```")[0] in explanation(space["between"])
+
+
+@pytest.mark.parametrize("body", ["(T_AB @ T_CB).log()", "T_WC @ p_W"])
+def test_the_document_shows_the_messages(body):
+    names = {"T_AB": SE3, "T_CB": SE3, "T_WC": SE3, "p_W": R3}
+    used = [name for name in names if name in body]
+    space = {"names": names}
+    exec(f"def f({', '.join(f'{n}: names[{n!r}]' for n in used)}):\n    return {body}", space)
+    with pytest.raises(DefinitionError) as error:
+        function(space["f"])
+    message = str(error.value).partition("f: ")[2]
+    assert any(line.endswith(message) for line in DOCUMENT.splitlines())

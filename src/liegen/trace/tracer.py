@@ -133,7 +133,9 @@ def _annotated(annotation: Any) -> tuple[Any, Frames | None]:
 
 def unknown_annotation(site: Site, factor: str, argument: str, annotation: str) -> DefinitionError:
     """The error for a name that does not exist."""
-    cure = f"import it: from liegen import {annotation}" if annotation in _KNOWN else f"use {_MANIFOLDS}"
+    home = "typing" if annotation == "Annotated" else "liegen"
+    known = annotation in (*_KNOWN, "Annotated", "frames")
+    cure = f"import it: from {home} import {annotation}" if known else f"use {_MANIFOLDS}"
     return DefinitionError(
         f"{site}: {factor}: argument {argument!r} has the unknown annotation {annotation!r}; {cure}"
     )
