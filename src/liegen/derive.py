@@ -40,6 +40,7 @@ def derive(graph: Graph) -> Kernel:
         value=value,
         jacobians=best,
         passes=passes,
+        frames=graph.frames.lines if graph.frames.typed else (),
     )
 
 
