@@ -42,6 +42,7 @@ def derive(graph: Graph, *, in_place: bool = False) -> Kernel:
         value=value,
         jacobians=best,
         passes=passes,
+        frames=graph.frames.lines if graph.frames.typed else (),
         in_place=in_place,
     )
 
