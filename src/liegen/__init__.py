@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from .manifolds import S2 as S2
     from .manifolds import SE2 as SE2
     from .manifolds import SE3 as SE3
+    from .manifolds import SE23 as SE23
     from .manifolds import SO2 as SO2
     from .manifolds import SO3 as SO3
     from .manifolds import Cal3_S2 as Cal3_S2
@@ -61,7 +62,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
     ".define": ("Function", "factor", "function"),
     ".errors": ("DefinitionError", "LiegenError"),
     ".manifolds": (
-        "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE3", "SO2", "SO3",
+        "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE23", "SE3", "SO2", "SO3",
         "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Vector",
     ),
     ".manifolds.functions": (

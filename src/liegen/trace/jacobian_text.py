@@ -63,6 +63,13 @@ _SPACE: Mapping[str, Labels] = {
     "direction": ("(B({r}) / |{0}|)",),
     "vector": ("B({0})^T",),
 }
+_EXTENDED: Mapping[str, Labels] = {
+    "rotation": ("[I, 0, 0]",),
+    "position": ("R({0}) [0, I, 0]",),
+    "velocity": ("R({0}) [0, 0, I]",),
+    "pose_of": ("[I, 0, 0; 0, I, 0]",),
+    "extended_pose": ("[I; 0; 0]", "[0; R({0})^T; 0]", "[0; 0; R({0})^T]"),
+}
 _VECTOR: Mapping[str, Labels] = {
     "add": ("I", "I"),
     "sub": ("I", "-I"),
@@ -200,7 +207,9 @@ def labels(node: Node) -> Labels:
     flat = issubclass(own, (Vector, SO2)) or isinstance(own.form, AdditiveForm)
     curved: Mapping[str, Labels] = _GROUP if isinstance(own.form, GroupForm) else {}
     planar = own.form.name in ("SO2", "SE2") or node.manifold.form.name in ("SO2", "SE2")
-    for table in (_ADDITIVE if flat else curved, _PLANE if planar else _SPACE, _VECTOR):
+    extended = "SE23" in (own.form.name, node.manifold.form.name)
+    parts = _PLANE if planar else _EXTENDED if extended else _SPACE
+    for table in (_ADDITIVE if flat else curved, parts, _VECTOR):
         if name in table:
             return table[name]
     places = ", ".join(f"{{{k}}}" for k in range(len(operands)))

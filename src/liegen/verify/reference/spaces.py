@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from . import sphere
+from . import extended, sphere
 from .logarithms import PRINCIPAL, Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
     Element,
@@ -167,6 +167,16 @@ _SE3 = _matrix_group(
     lambda d: _exp_pose(skew(d[:3]), length(d[:3]), d[3:]),
     log_se3,
 )
+_SE23 = _matrix_group(
+    9,
+    lambda c: extended.extended(_load_so3(c[:4]), c[4:7], c[7:]),
+    lambda T, like: (
+        *_store_so3(extended.rotation_of(T), like), *extended.column_of(T, 3), *extended.column_of(T, 4),
+    ),
+    extended.inverse,
+    extended.exp,
+    extended.log,
+)  # fmt: skip
 #: R^n under addition; its exponential and logarithm are the identity.
 _VECTORS = GroupSpace(
     dim=len,
@@ -196,7 +206,14 @@ def _leading(dim: int) -> Space:
     )
 
 
-GROUPS: Mapping[str, GroupSpace] = {"SO2": _SO2, "SO3": _SO3, "SE2": _SE2, "SE3": _SE3, "R": _VECTORS}
+GROUPS: Mapping[str, GroupSpace] = {
+    "SO2": _SO2,
+    "SO3": _SO3,
+    "SE2": _SE2,
+    "SE3": _SE3,
+    "SE23": _SE23,
+    "R": _VECTORS,
+}
 SPACES: Mapping[str, Space] = {
     **GROUPS,
     "S2": _S2,
