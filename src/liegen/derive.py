@@ -66,8 +66,14 @@ def _output(name: str, form: ManifoldForm) -> Output:
     return Output(name, form.name, form.storage, form.dim)
 
 
+def _with_parts(form: ManifoldForm) -> tuple[ManifoldForm, ...]:
+    """A form and, if it is a product, the forms of its parts."""
+    return (form, *(inner for part in form.parts for inner in _with_parts(part)))
+
+
 def _conventions(graph: Graph) -> tuple[str, ...]:
     """A line for each manifold that occurs; vectors that are only results need none."""
     results = [node.manifold for _, node in graph.outputs if not issubclass(node.manifold, Vector)]
-    forms = [m.form for m in (*(p.manifold for p in graph.parameters), *results)]
+    named = [m.form for m in (*(p.manifold for p in graph.parameters), *results)]
+    forms = [part for form in named for part in _with_parts(form)]
     return tuple({form.name: form.note for form in forms}.values())

@@ -19,6 +19,7 @@ from .node import Leaf as Leaf
 from .node import Node as Node
 from .node import Operation as Operation
 from .node import Value as Value
+from .product import Product as Product
 from .s2 import S2 as S2
 from .vector import R1 as R1
 from .vector import R2 as R2

@@ -11,18 +11,10 @@ from liegen.errors import DefinitionError
 from .form import Blocks, Coords, Rule
 from .group import Group
 from .groups import SE3, SO3
-from .node import Operation, V, Value, apply, called, here
+from .node import Operation, Value, apply, called, here
+from .part import part
 from .se23_form import SE23Form
 from .vector import R3, VectorLike, as_vector
-
-
-def part(x: Value, name: str, result: type[V], stored: slice, blocks: Rule, called_as: str = "") -> V:
-    """The part ``x.name``: a slice of the storage, with its Jacobian."""
-
-    def value(coords: Coords) -> Coordinates:
-        return tuple(coords[stored])
-
-    return apply(Operation(called_as or name, result, value, blocks, f"{{0}}.{name}"), result, x)
 
 
 def needs_rotation(rotation: object, where: str) -> None:

@@ -52,6 +52,7 @@ class ManifoldForm(ABC):
     storage: tuple[str, ...]  # names of the stored scalars
     tangent: tuple[str, ...]  # names of the tangent's coordinates, with units
     note: str = ""  # one line on storage and chart for headers and documentation
+    parts: tuple[ManifoldForm, ...] = ()  # of a product
     quaternions: tuple[int, ...] = ()  # where a quaternion q begins in the storage; -q is the same element
     flat: bool = False  # the chart is addition
     turns: bool = False  # a group whose elements rotate

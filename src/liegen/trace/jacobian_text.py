@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from string import Formatter
 
-from liegen.manifolds import SO2, Leaf, Node, Vector
-from liegen.manifolds.additive_form import AdditiveForm
+from liegen.manifolds import SO2, Leaf, Node
 from liegen.manifolds.form import GroupForm
 
 from .formulas import free_names, named_values, texts_of
@@ -196,7 +195,10 @@ def labels(node: Node) -> Labels:
     name, operands = node.operation.name, node.operands
     if name == "take":
         return (f"I[{_positions(node.operation.parameters)}]",)
-    if name == "stack":
+    if name == "part":
+        _, moved = node.operation.parameters
+        return (f"I[{_positions(moved)}]",)
+    if name in ("stack", "product"):
         return tuple(_columns(node))
     first, dim = operands[0].manifold, node.manifold.form.dim
     # R3.exp, the exponential of a group, is shown with its class
@@ -204,8 +206,10 @@ def labels(node: Node) -> Labels:
         dims = [n.manifold.form.dim for n in operands]
         return tuple(_slope(text, k, dims, dim) for k, text in enumerate(_SLOPE[name]))
     own = node.manifold if name == "exp" else first
-    flat = issubclass(own, (Vector, SO2)) or isinstance(own.form, AdditiveForm)
+    flat = own.form.flat or issubclass(own, SO2)
     curved: Mapping[str, Labels] = _GROUP if isinstance(own.form, GroupForm) else {}
+    if isinstance(own.form, GroupForm) and not own.form.exponential and name in ("retract", "local"):
+        curved = {}
     planar = own.form.name in ("SO2", "SE2") or node.manifold.form.name in ("SO2", "SE2")
     extended = "SE23" in (own.form.name, node.manifold.form.name)
     parts = _PLANE if planar else _EXTENDED if extended else _SPACE

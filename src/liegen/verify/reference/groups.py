@@ -97,6 +97,8 @@ OPERATIONS: Mapping[str, Rule] = {
     "unrotate": plain(_unrotate),
     "pose": plain(pose),
     "rotation": _rotation,
+    "part": lambda call: call.values[0][call.operation.parameters[0]],
+    "product": lambda call: tuple(call.values),
     "extended_pose": plain(extended.extended),
     "pose_of": _pose_of,
     "position": _column("position"),

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from . import extended, sphere
+from .contract import GroupSpace, Space, Store
 from .logarithms import PRINCIPAL, Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
     Element,
@@ -26,33 +26,10 @@ from .matrix import (
     sub,
     transpose,
 )
+from .products import product_group, product_space
 
 if TYPE_CHECKING:
-    from liegen.manifolds import Value
-
-#: Store an element; of two storages (q and -q) the one nearer to the second argument.
-Store = Callable[[Element, Sequence[float] | None], Vector]
-
-
-@dataclass(frozen=True)
-class Space:
-    """A manifold: elements from stored numbers and back, and the default chart."""
-
-    dim: Callable[[Element], int]
-    load: Callable[[Vector], Element]
-    store: Store
-    retract: Callable[[Element, Vector, Branch], Element]
-    local: Callable[[Element, Element, Branch], Vector]
-
-
-@dataclass(frozen=True)
-class GroupSpace(Space):
-    """A Lie group."""
-
-    compose: Callable[[Element, Element], Element]
-    inverse: Callable[[Element], Element]
-    exp: Callable[[Vector], Element]
-    log: Callable[[Element, Branch], Vector]
+    from liegen.manifolds import ManifoldForm, Value
 
 
 def _matrix_group(
@@ -224,25 +201,37 @@ SPACES: Mapping[str, Space] = {
 }
 
 
-def _key(manifold: type[Value]) -> str:
+def _key(form: ManifoldForm) -> str:
     """The name of the manifold; R1, R2, ... are all R."""
-    name = manifold.form.name
+    name = form.name
     return "R" if name[:1] == "R" and name[1:].isdigit() else name
 
 
 def space_of(manifold: type[Value]) -> Space:
     """The reference's entry for a manifold."""
-    return SPACES[_key(manifold)]
+    return _space(manifold.form)
 
 
 def group_of(manifold: type[Value]) -> GroupSpace:
     """The reference's entry for a group."""
-    return GROUPS[_key(manifold)]
+    return _group(manifold.form)
+
+
+def _space(form: ManifoldForm) -> Space:
+    return product_space(_sized(form), list(map(_space, form.parts))) if form.parts else SPACES[_key(form)]
+
+
+def _group(form: ManifoldForm) -> GroupSpace:
+    return product_group(_sized(form), list(map(_group, form.parts))) if form.parts else GROUPS[_key(form)]
+
+
+def _sized(form: ManifoldForm) -> list[tuple[int, int]]:
+    return [(part.size, part.dim) for part in form.parts]
 
 
 def is_vector(manifold: type[Value]) -> bool:
     """Whether it is some R^n."""
-    return _key(manifold) == "R"
+    return not manifold.form.parts and _key(manifold.form) == "R"
 
 
 def _numbers(coords: Sequence[float]) -> Vector:
