@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from group_tools import BOUND, worst
 
-from liegen import R3, SE23, SO3, factor, stack
+from liegen import R3, SE23, SO3, DefinitionError, NavState, factor, stack
 from liegen.library.sampling import between, prior
 
 
@@ -31,7 +31,7 @@ def factors_of(G: Any) -> dict[str, Any]:
     return {f.name: f for f in (prior_of, between_of, all_operations, interpolated)}
 
 
-GROUPS = [SE23]
+GROUPS = [SE23, NavState]
 
 
 @pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)
@@ -45,15 +45,40 @@ def test_factors_against_the_reference(G: Any, name: str) -> None:
 def extended_parts(x: SE23, y: SE23, *, lever: R3, z: SO3):
     """Everything that an extended pose offers: parts, constructor, its pose."""
     moved = SE23(x.rotation @ z, x.position + x.rotation @ lever, y.velocity)
-    return stack(
-        moved.local(y), x.pose.transform_to(y.position), y.velocity - x.velocity, z.local(x.rotation)
-    )
+    seen = x.pose.transform_to(y.position)
+    return stack(moved.local(y), seen, y.velocity - x.velocity, z.local(x.rotation))
 
 
-def test_parts_and_constructor() -> None:
-    errors = worst(extended_parts)
+@factor
+def nav_parts(x: NavState, y: NavState, *, lever: R3, z: SO3):
+    """The same with the other chart."""
+    moved = NavState(x.rotation @ z, x.position + x.rotation @ lever, y.velocity)
+    seen = x.pose.transform_to(y.position)
+    return stack(moved.local(y), seen, y.velocity - x.velocity, z.local(x.rotation))
+
+
+@pytest.mark.parametrize("function", [extended_parts, nav_parts], ids=lambda f: f.name)
+def test_parts_and_constructor(function: Any) -> None:
+    errors = worst(function)
     assert max(error for error, _ in errors.values()) <= BOUND, errors
-    x = SE23(SO3.exp([0.1, 0.2, 0.3]), [1, 2, 3], [4, 5, 6])
+
+
+@pytest.mark.parametrize("G", [SE23, NavState], ids=lambda G: G.__name__)
+def test_parts_are_slices_of_the_storage(G: Any) -> None:
+    x = G(SO3.exp([0.1, 0.2, 0.3]), [1, 2, 3], [4, 5, 6])
     np.testing.assert_array_equal(np.asarray(x.position), [1, 2, 3])
     np.testing.assert_array_equal(np.asarray(x.velocity), [4, 5, 6])
     np.testing.assert_array_equal(np.asarray(x.pose), np.asarray(x)[:7])
+    np.testing.assert_array_equal(np.asarray(x.rotation), np.asarray(x)[:4])
+    with pytest.raises(DefinitionError, match="needs an SO3, got SE3"):
+        G(x.pose, [1, 2, 3], [4, 5, 6])
+
+
+def test_the_charts_differ_beyond_first_order() -> None:
+    """A mistaken chart would not pass as the other one."""
+    d = np.linspace(0.1, 0.9, 9)
+    x = SE23.identity().retract(d)
+    y = NavState.identity().retract(d)
+    np.testing.assert_array_equal(np.asarray(y)[4:], d[3:])
+    assert np.max(np.abs(np.asarray(x) - np.asarray(y))) > 0.05
+    np.testing.assert_array_equal(np.asarray(SE23.exp(d)), np.asarray(NavState.exp(d)))

@@ -9,7 +9,21 @@ import pytest
 import sympy
 from scipy.linalg import expm
 
-from liegen.manifolds import R2, R3, S2, SE2, SE3, SE23, SO2, SO3, Cal3_S2, Cal3Bundler, Cal3DS2, Product
+from liegen.manifolds import (
+    R2,
+    R3,
+    S2,
+    SE2,
+    SE3,
+    SE23,
+    SO2,
+    SO3,
+    Cal3_S2,
+    Cal3Bundler,
+    Cal3DS2,
+    NavState,
+    Product,
+)
 
 
 class Posed(Product):
@@ -38,20 +52,15 @@ GROUPS = {
     SE3: [unit(4, *s) for s in SPIN] + [unit(4, (k, 3, 1)) for k in range(3)],
     SE23: [unit(5, *s) for s in SPIN] + [unit(5, (k, c, 1)) for c in (3, 4) for k in range(3)],
 }
+GROUPS[NavState] = GROUPS[SE23]
 GROUPS[Posed] = [
     np.pad(E, (start, 11 - start - len(E)))
     for part, start in ((SE3, 0), (R3, 4), (R2, 8))
     for E in GROUPS[part]
 ]
 #: The tangent's rotation coordinates, and the number of stored numbers that make a unit rotation.
-SPINS = {
-    SO2: ([0], 2),
-    SE2: ([2], 2),
-    SO3: ([0, 1, 2], 4),
-    SE3: ([0, 1, 2], 4),
-    SE23: ([0, 1, 2], 4),
-    Posed: ([0, 1, 2], 4),
-}
+SPINS = {SO2: ([0], 2), SE2: ([2], 2)}
+SPINS |= dict.fromkeys((SO3, SE3, SE23, NavState, Posed), ([0, 1, 2], 4))
 ANGLES = (0.0, 1e-160, 1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.7320508, 2.9, np.pi - 1e-3, np.pi - 1e-9)
 
 group = pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)

@@ -8,6 +8,7 @@ from .calibration import Cal3DS2 as Cal3DS2
 from .calibration import Calibration as Calibration
 from .condition import Condition as Condition
 from .extended import SE23 as SE23
+from .extended import NavState as NavState
 from .form import ManifoldForm as ManifoldForm
 from .group import Group as Group
 from .group import Manifold as Manifold

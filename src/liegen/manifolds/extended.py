@@ -11,6 +11,7 @@ from liegen.errors import DefinitionError
 from .form import Blocks, Coords, Rule
 from .group import Group
 from .groups import SE3, SO3
+from .nav_state_form import NavStateForm
 from .node import Operation, Value, apply, called, here
 from .part import part
 from .se23_form import SE23Form
@@ -83,3 +84,10 @@ class SE23(ExtendedPose):
 
     __slots__ = ()
     form: ClassVar[SE23Form] = SE23Form()  # pyright: ignore[reportIncompatibleVariableOverride]
+
+
+class NavState(ExtendedPose):
+    """An extended pose with the chart of GTSAM's NavState: each component moves on its own."""
+
+    __slots__ = ()
+    form: ClassVar[NavStateForm] = NavStateForm()  # pyright: ignore[reportIncompatibleVariableOverride]

@@ -14,6 +14,7 @@ from string import Formatter
 
 from liegen.manifolds import SO2, Leaf, Node
 from liegen.manifolds.form import GroupForm
+from liegen.manifolds.se23_form import SE23Form
 
 from .formulas import free_names, named_values, texts_of
 from .graph import Graph
@@ -211,7 +212,7 @@ def labels(node: Node) -> Labels:
     if isinstance(own.form, GroupForm) and not own.form.exponential and name in ("retract", "local"):
         curved = {}
     planar = own.form.name in ("SO2", "SE2") or node.manifold.form.name in ("SO2", "SE2")
-    extended = "SE23" in (own.form.name, node.manifold.form.name)
+    extended = isinstance(own.form, SE23Form) or isinstance(node.manifold.form, SE23Form)
     parts = _PLANE if planar else _EXTENDED if extended else _SPACE
     for table in (_ADDITIVE if flat else curved, parts, _VECTOR):
         if name in table:

@@ -63,12 +63,13 @@ def log(T: Matrix, branch: Branch = PRINCIPAL) -> Vector:
 def local_componentwise(x: Matrix, y: Matrix, branch: Branch) -> Vector:
     """GTSAM's NavState::localCoordinates: (Log(R_x^T R_y), R_x^T (p_y - p_x), R_x^T (v_y - v_x))."""
     back = transpose(rotation_of(x))
-    turn = log_so3(matmul(back, rotation_of(y)), branch)
+    near = None if branch.near is None else branch.near[:3]
+    turn = log_so3(matmul(back, rotation_of(y)), Branch(near, None, branch.flip))
     moves = (matvec(back, sub(column_of(y, k), column_of(x, k))) for k in (3, 4))
     return (*turn, *(u for move in moves for u in move))
 
 
-def retract_componentwise(x: Matrix, d: Vector) -> Matrix:
+def retract_componentwise(x: Matrix, d: Vector, _: Branch) -> Matrix:
     """GTSAM's NavState::retract: (R Exp(w), p + R d_p, v + R d_v)."""
     R = rotation_of(x)
     p, v = (add(column_of(x, k), matvec(R, u)) for k, u in ((3, d[3:6]), (4, d[6:])))

@@ -83,7 +83,12 @@ def _pose_of(call: Call) -> Matrix:
 
 
 #: Where a vector stands in the 5 x 5 matrices.
-_COLUMNS: Mapping[tuple[str, str], int] = {("position", "SE23"): 3, ("velocity", "SE23"): 4}
+_COLUMNS: Mapping[tuple[str, str], int] = {
+    ("position", "SE23"): 3,
+    ("velocity", "SE23"): 4,
+    ("position", "NavState"): 3,
+    ("velocity", "NavState"): 4,
+}
 
 OPERATIONS: Mapping[str, Rule] = {
     "compose": _compose,

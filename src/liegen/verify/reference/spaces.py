@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from . import extended, sphere
@@ -154,6 +155,11 @@ _SE23 = _matrix_group(
     extended.exp,
     extended.log,
 )  # fmt: skip
+_NAV_STATE = replace(
+    _SE23,
+    retract=extended.retract_componentwise,
+    local=extended.local_componentwise,
+)
 #: R^n under addition; its exponential and logarithm are the identity.
 _VECTORS = GroupSpace(
     dim=len,
@@ -189,6 +195,7 @@ GROUPS: Mapping[str, GroupSpace] = {
     "SE2": _SE2,
     "SE3": _SE3,
     "SE23": _SE23,
+    "NavState": _NAV_STATE,
     "R": _VECTORS,
 }
 SPACES: Mapping[str, Space] = {
