@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from group_tools import BOUND, worst
 
-from liegen import R3, SE23, SO3, DefinitionError, NavState, factor, stack
+from liegen import R3, SE23, SO3, DefinitionError, Gal3, NavState, factor, stack
 from liegen.library.sampling import between, prior
 
 
@@ -31,7 +31,7 @@ def factors_of(G: Any) -> dict[str, Any]:
     return {f.name: f for f in (prior_of, between_of, all_operations, interpolated)}
 
 
-GROUPS = [SE23, NavState]
+GROUPS = [SE23, NavState, Gal3]
 
 
 @pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)
@@ -55,6 +55,37 @@ def nav_parts(x: NavState, y: NavState, *, lever: R3, z: SO3):
     moved = NavState(x.rotation @ z, x.position + x.rotation @ lever, y.velocity)
     seen = x.pose.transform_to(y.position)
     return stack(moved.local(y), seen, y.velocity - x.velocity, z.local(x.rotation))
+
+
+@factor
+def galilean_parts(x: Gal3, y: Gal3, lever: R3, *, z: SO3):
+    """Parts of an event move with its time."""
+    moved = Gal3(x.rotation @ z, x.position + lever, y.velocity, 0.5 * x.time + lever[0])
+    seen = x.pose.transform_to(y.position)
+    return stack(moved.local(y), seen, y.velocity - x.velocity, z.local(x.rotation), y.time - x.time)
+
+
+def test_galilean_parts() -> None:
+    errors = worst(galilean_parts)
+    assert max(error for error, _ in errors.values()) <= BOUND, errors
+    x = Gal3(SO3.exp([0.1, 0.2, 0.3]), [1, 2, 3], [4, 5, 6], 7.0)
+    assert float(x.time) == 7.0
+    np.testing.assert_array_equal(np.asarray(x.velocity), [4, 5, 6])
+    np.testing.assert_array_equal(np.asarray(x.pose), np.asarray(x)[:7])
+
+
+def test_extended_poses_are_the_galilean_ones_without_time() -> None:
+    d = np.linspace(-1.3, 0.9, 9)
+    x, y = Gal3.exp([*d, 0.0]), SE23.exp(d)
+    np.testing.assert_allclose(np.asarray(x)[:10], np.asarray(y), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(Gal3.Jr([*d, 0.0])[:9, :9], SE23.Jr(d), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(Gal3.Jr_inv([*d, 0.0])[:9, :9], SE23.Jr_inv(d), rtol=0, atol=1e-15)
+
+
+def test_free_motion_is_a_one_parameter_group() -> None:
+    """Without rotation the velocity grows with the time, which gives p = nu iota / 2."""
+    x = Gal3.exp([0, 0, 0, 0, 0, 0, 3.0, 0, 0, 2.0])
+    np.testing.assert_allclose(np.asarray(x), [0, 0, 0, 1, 3, 0, 0, 3, 0, 0, 2], atol=1e-15)
 
 
 @pytest.mark.parametrize("function", [extended_parts, nav_parts], ids=lambda f: f.name)

@@ -21,6 +21,7 @@ from liegen.manifolds import (
     Cal3_S2,
     Cal3Bundler,
     Cal3DS2,
+    Gal3,
     NavState,
     Product,
 )
@@ -53,6 +54,11 @@ GROUPS = {
     SE23: [unit(5, *s) for s in SPIN] + [unit(5, (k, c, 1)) for c in (3, 4) for k in range(3)],
 }
 GROUPS[NavState] = GROUPS[SE23]
+GROUPS[Gal3] = [
+    *(unit(5, *s) for s in SPIN),
+    *(unit(5, (k, c, 1)) for c in (4, 3) for k in range(3)),
+    unit(5, (3, 4, 1)),
+]
 GROUPS[Posed] = [
     np.pad(E, (start, 11 - start - len(E)))
     for part, start in ((SE3, 0), (R3, 4), (R2, 8))
@@ -60,7 +66,7 @@ GROUPS[Posed] = [
 ]
 #: The tangent's rotation coordinates, and the number of stored numbers that make a unit rotation.
 SPINS = {SO2: ([0], 2), SE2: ([2], 2)}
-SPINS |= dict.fromkeys((SO3, SE3, SE23, NavState, Posed), ([0, 1, 2], 4))
+SPINS |= dict.fromkeys((SO3, SE3, SE23, NavState, Gal3, Posed), ([0, 1, 2], 4))
 ANGLES = (0.0, 1e-160, 1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.7320508, 2.9, np.pi - 1e-3, np.pi - 1e-9)
 
 group = pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)

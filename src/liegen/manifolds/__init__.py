@@ -10,6 +10,7 @@ from .condition import Condition as Condition
 from .extended import SE23 as SE23
 from .extended import NavState as NavState
 from .form import ManifoldForm as ManifoldForm
+from .galilean import Gal3 as Gal3
 from .group import Group as Group
 from .group import Manifold as Manifold
 from .groups import SE2 as SE2

@@ -22,10 +22,18 @@ Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
 Blocks = tuple[Chain | None, ...]
 #: The coordinates of a result from those of its operands.
-Compute = Callable[[Any], Vector] | Callable[[Any, Any], Vector] | Callable[[Any, Any, Any], Vector]
+Compute = (
+    Callable[[Any], Vector]
+    | Callable[[Any, Any], Vector]
+    | Callable[[Any, Any, Any], Vector]
+    | Callable[[Any, Any, Any, Any], Vector]
+)
 #: The blocks from the result and the operands.
 Rule = (
-    Callable[[Any, Any], Blocks] | Callable[[Any, Any, Any], Blocks] | Callable[[Any, Any, Any, Any], Blocks]
+    Callable[[Any, Any], Blocks]
+    | Callable[[Any, Any, Any], Blocks]
+    | Callable[[Any, Any, Any, Any], Blocks]
+    | Callable[[Any, Any, Any, Any, Any], Blocks]
 )
 
 

@@ -14,6 +14,7 @@ from string import Formatter
 
 from liegen.manifolds import SO2, Leaf, Node
 from liegen.manifolds.form import GroupForm
+from liegen.manifolds.gal3_form import Gal3Form
 from liegen.manifolds.se23_form import SE23Form
 
 from .formulas import free_names, named_values, texts_of
@@ -70,6 +71,16 @@ _EXTENDED: Mapping[str, Labels] = {
     "pose_of": ("[I, 0, 0; 0, I, 0]",),
     "extended_pose": ("[I; 0; 0]", "[0; R({0})^T; 0]", "[0; 0; R({0})^T]"),
 }
+_GALILEAN: Mapping[str, Labels] = {
+    "rotation": ("[I, 0, 0, 0]",),
+    "position": ("[0, R({0}), 0, {0}.velocity]",),
+    "velocity": ("R({0}) [0, 0, I, 0]",),
+    "time": ("[0, 0, 0, 1]",),
+    "pose_of": ("[I, 0, 0, 0; 0, I, 0, R({0})^T {0}.velocity]",),
+    "event": (
+        "[I; 0; 0; 0]", "[0; R({0})^T; 0; 0]", "[0; 0; R({0})^T; 0]", "[0; -R({0})^T {2}; 0; 1]",
+    ),
+}  # fmt: skip
 _VECTOR: Mapping[str, Labels] = {
     "add": ("I", "I"),
     "sub": ("I", "-I"),
@@ -213,7 +224,8 @@ def labels(node: Node) -> Labels:
         curved = {}
     planar = own.form.name in ("SO2", "SE2") or node.manifold.form.name in ("SO2", "SE2")
     extended = isinstance(own.form, SE23Form) or isinstance(node.manifold.form, SE23Form)
-    parts = _PLANE if planar else _EXTENDED if extended else _SPACE
+    galilean = isinstance(own.form, Gal3Form) or isinstance(node.manifold.form, Gal3Form)
+    parts = _PLANE if planar else _EXTENDED if extended else _GALILEAN if galilean else _SPACE
     for table in (_ADDITIVE if flat else curved, parts, _VECTOR):
         if name in table:
             return table[name]

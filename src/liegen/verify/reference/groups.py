@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from . import extended
+from . import extended, galilean
 from .calls import Call, Rule, plain
 from .matrix import Element, Matrix, Vector, add, matvec, normalised, sub, transpose
 from .spaces import GroupSpace, group_of, pose, rotation_of, space_of, translation_of
@@ -88,6 +88,8 @@ _COLUMNS: Mapping[tuple[str, str], int] = {
     ("velocity", "SE23"): 4,
     ("position", "NavState"): 3,
     ("velocity", "NavState"): 4,
+    ("position", "Gal3"): 4,
+    ("velocity", "Gal3"): 3,
 }
 
 OPERATIONS: Mapping[str, Rule] = {
@@ -105,6 +107,8 @@ OPERATIONS: Mapping[str, Rule] = {
     "part": lambda call: call.values[0][call.operation.parameters[0]],
     "product": lambda call: tuple(call.values),
     "extended_pose": plain(extended.extended),
+    "event": plain(galilean.event),
+    "time": lambda call: (call.values[0][3][4],),
     "pose_of": _pose_of,
     "position": _column("position"),
     "velocity": _column("velocity"),

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from . import extended, sphere
+from . import extended, galilean, sphere
 from .contract import GroupSpace, Space, Store
 from .logarithms import PRINCIPAL, Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
@@ -160,6 +160,17 @@ _NAV_STATE = replace(
     retract=extended.retract_componentwise,
     local=extended.local_componentwise,
 )
+_GAL3 = _matrix_group(
+    10,
+    lambda c: galilean.event(_load_so3(c[:4]), c[4:7], c[7:10], c[10:]),
+    lambda T, like: (
+        *_store_so3(extended.rotation_of(T), like),
+        *extended.column_of(T, 4), *extended.column_of(T, 3), T[3][4],
+    ),
+    galilean.inverse,
+    galilean.exp,
+    galilean.log,
+)  # fmt: skip
 #: R^n under addition; its exponential and logarithm are the identity.
 _VECTORS = GroupSpace(
     dim=len,
@@ -196,6 +207,7 @@ GROUPS: Mapping[str, GroupSpace] = {
     "SE3": _SE3,
     "SE23": _SE23,
     "NavState": _NAV_STATE,
+    "Gal3": _GAL3,
     "R": _VECTORS,
 }
 SPACES: Mapping[str, Space] = {
