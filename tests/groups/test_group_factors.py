@@ -8,6 +8,7 @@ from group_tools import BOUND, worst
 
 from liegen import R3, SE23, SO3, DefinitionError, Gal3, NavState, factor, stack
 from liegen.library.sampling import between, prior
+from liegen.verify import verify
 
 
 def factors_of(G: Any) -> dict[str, Any]:
@@ -39,6 +40,14 @@ GROUPS = [SE23, NavState, Gal3]
 def test_factors_against_the_reference(G: Any, name: str) -> None:
     errors = worst(factors_of(G)[name])
     assert max(error for error, _ in errors.values()) <= BOUND, errors
+
+
+@pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)
+def test_every_check_of_verify_passes(G: Any) -> None:
+    """C and NumPy against the reference too, differences, remainders, kilometres."""
+    report = verify([factors_of(G)["between_of"], PARTS[G]], samples=12, seed=1, workers=1)
+    failed = [(f.factor, c.name, c.worst, c.where) for f in report.factors for c in f.checks if not c.passed]
+    assert not failed
 
 
 @factor
@@ -113,3 +122,7 @@ def test_the_charts_differ_beyond_first_order() -> None:
     np.testing.assert_array_equal(np.asarray(y)[4:], d[3:])
     assert np.max(np.abs(np.asarray(x) - np.asarray(y))) > 0.05
     np.testing.assert_array_equal(np.asarray(SE23.exp(d)), np.asarray(NavState.exp(d)))
+
+
+#: A factor with everything that the class offers.
+PARTS = {SE23: extended_parts, NavState: nav_parts, Gal3: galilean_parts}

@@ -189,6 +189,15 @@ def test_mpmath_keeps_fifty_digits(G):
             assert max(abs(a - b) for a, b in zip(back, exact, strict=True)) < mpmath.mpf(10) ** -46
 
 
+@group
+def test_jacobians_are_inverses_to_fifty_digits(G):
+    with mpmath.workdps(50):
+        for d in tangents(G, angles=(0.0, 1e-160, 1e-20, 1e-9, 1e-3, 1.0, 3.1)):
+            exact = [mpmath.mpf(x) for x in d]
+            product = mpmath.matrix(G.form.Jr(exact)) * mpmath.matrix(G.form.Jr_inv(exact))
+            assert mpmath.mnorm(product - mpmath.eye(G.form.dim)) < mpmath.mpf(10) ** -45
+
+
 @pytest.mark.parametrize("G", SPINS, ids=lambda G: G.__name__)
 def test_identities_proved_in_sympy(G):
     """R^T R = I, Ad(ab) = Ad(a) Ad(b), a a^-1 = 1, for all elements: polynomials modulo |q|^2 = 1."""

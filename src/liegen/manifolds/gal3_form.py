@@ -151,7 +151,7 @@ class Gal3Form(GroupForm):
         phi, rho, nu, t = d[:3], d[_RHO], d[_NU], d[9]
         s, m = dot(phi, phi), dot(phi, nu)
         _, _, c2, c3, c4, c5 = stumpff(s, 5)
-        c6 = (1.0 / 24.0 - c4) / select(lt(s, _TINY), _TINY, s)
+        c6 = (1 - 24 * c4) / (24 * select(lt(s, _TINY), _TINY, s))
         slopes = (c3 - 2 * c4, 3 * c5 - c4)
         by_rho, by_nu = (dual.slope_of_series(phi, u, -c2, c3, *slopes) for u in (rho, nu))
         across = cross(phi, nu)
