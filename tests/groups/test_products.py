@@ -10,8 +10,7 @@ import pytest
 from group_tools import BOUND, worst
 from product_factors import HOME, Camera, Sighting, State, prior_state, step
 
-import liegen
-from liegen import R1, R2, R3, R6, SE3, SO3, Cal3_S2, DefinitionError, Product, factor
+from liegen import R1, R2, R3, R6, SE3, SO3, Cal3_S2, DefinitionError, Product, factor, library
 from liegen.define import Function
 from liegen.verify import verify
 
@@ -111,7 +110,7 @@ def test_parts_have_structural_blocks():
     def rebuilt(x: State, *, z: State):
         return z.local(State(pose=x.pose, vel=x.vel, bias=x.bias))
 
-    assert part_of.kernel.jacobians.operations == liegen.library.prior_se3.kernel.jacobians.operations
+    assert part_of.kernel.jacobians.operations == library.prior_se3.kernel.jacobians.operations
     assert rebuilt.kernel.jacobians.operations == prior_state.kernel.jacobians.operations
     D = part_of.jacobians(state(), z=POSE)["res_D_x"]
     np.testing.assert_array_equal(D[:, 6:], np.zeros((6, 9)))
