@@ -28,12 +28,16 @@ if TYPE_CHECKING:
     from .manifolds import S2 as S2
     from .manifolds import SE2 as SE2
     from .manifolds import SE3 as SE3
+    from .manifolds import SE23 as SE23
     from .manifolds import SO2 as SO2
     from .manifolds import SO3 as SO3
     from .manifolds import Cal3_S2 as Cal3_S2
     from .manifolds import Cal3Bundler as Cal3Bundler
     from .manifolds import Cal3DS2 as Cal3DS2
     from .manifolds import Condition as Condition
+    from .manifolds import Gal3 as Gal3
+    from .manifolds import NavState as NavState
+    from .manifolds import Product as Product
     from .manifolds import R as R
     from .manifolds import Vector as Vector
     from .manifolds.functions import abs as abs
@@ -61,8 +65,8 @@ _NAMES: dict[str, tuple[str, ...]] = {
     ".define": ("Function", "factor", "function"),
     ".errors": ("DefinitionError", "LiegenError"),
     ".manifolds": (
-        "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE3", "SO2", "SO3",
-        "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Vector",
+        "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE23", "SE3", "SO2", "SO3",
+        "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Gal3", "NavState", "Product", "Vector",
     ),
     ".manifolds.functions": (
         "abs", "acos", "asin", "atan2", "cos", "cross", "dot", "exp", "log", "maximum", "minimum", "sin",

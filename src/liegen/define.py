@@ -105,7 +105,7 @@ class Function(Generic[P, T]):
     def _coerced(self, s: Signature, value: Any) -> Value:
         if not isinstance(value, Value):
             return s.manifold.from_storage(value)
-        if value.form.name != s.manifold.form.name:
+        if value.form != s.manifold.form:
             raise DefinitionError(
                 f"{here()}: {self.name}: argument {s.name!r} must be {s.manifold.form.name}, "
                 f"got {called(value)}"

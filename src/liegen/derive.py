@@ -69,6 +69,11 @@ def _output(name: str, form: ManifoldForm) -> Output:
     return Output(name, form.name, form.storage, form.dim, form.shape)
 
 
+def _with_parts(form: ManifoldForm) -> tuple[ManifoldForm, ...]:
+    """A form and, if it is a product, the forms of its parts."""
+    return (form, *(inner for part in form.parts for inner in _with_parts(part)))
+
+
 def _conventions(graph: Graph) -> tuple[str, ...]:
     """A line for each manifold that occurs; vectors and matrices that are only results need none."""
     results = [
@@ -76,5 +81,6 @@ def _conventions(graph: Graph) -> tuple[str, ...]:
     ]
     parameters: list[Any] = [p for _, node in graph.outputs for p in node.operation.parameters]
     owners = [p for p in parameters if isinstance(p, type) and issubclass(p, Manifold)]
-    forms = [m.form for m in (*owners, *(p.manifold for p in graph.parameters), *results)]
+    named = [m.form for m in (*owners, *(p.manifold for p in graph.parameters), *results)]
+    forms = [part for form in named for part in _with_parts(form)]
     return tuple({form.name: form.note for form in forms}.values())

@@ -7,7 +7,7 @@ so that the residual has the rotation that the case asks for; ``default_sampler`
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.coefficients import tables
-from liegen.manifolds import Manifold, Value, Vector
-from liegen.manifolds.form import PoseForm, RotationForm
+from liegen.manifolds import Manifold, Value
 
 Sampler = Callable[["Draw", "Case"], Mapping[str, Value]]
 
@@ -82,41 +81,12 @@ class Draw:
 
     def element(self, manifold: type[Manifold], spread: float = 1.0) -> Any:
         """Any element: rotations uniform, positions of size ``spread``, calibrations of a usual camera."""
-        form = manifold.form
-        if isinstance(form, PoseForm):
-            rotation = self._rotation(form.rotation)
-            return manifold.from_storage([*rotation, *self.vector(form.rotation.space, spread=spread)])
-        if isinstance(form, RotationForm):
-            return manifold.from_storage(self._rotation(form))
-        if issubclass(manifold, Vector):
-            # a spread is one of positions: other vectors are weights, pixels, depths
-            return manifold.from_storage(self.vector(form.dim, spread=spread if form.dim in (2, 3) else 1.0))
-        if form.name in _CALIBRATIONS:
-            low, high = _CALIBRATIONS[form.name]
-            return manifold.from_storage(self.generator.uniform(low, high))
-        return manifold.from_storage(self.unit(form.size))
-
-    def _rotation(self, form: RotationForm) -> NDArray[np.float64]:
-        return self.unit(form.size)
+        return manifold.from_storage(manifold.form.draw(self, spread))
 
     def tangent(self, manifold: type[Manifold], case: Case) -> NDArray[np.float64]:
         """A tangent vector whose rotation has the case's angle, whose translation the case's offset."""
-        form = manifold.form
         angle = self.uniform(0, 3.0) if case.angle is None else case.angle
-        if isinstance(form, PoseForm):
-            parts = self.unit(form.rotation.dim) * angle, self.vector(form.rotation.space, case.offset)
-            return np.concatenate(parts if form.rotation_first else parts[::-1])
-        if issubclass(manifold, Vector):
-            return self.vector(form.dim, case.offset)
-        return self.unit(form.dim) * angle
-
-
-_FOCAL = ([300.0, 300.0, -1.0, 300.0, 200.0], [600.0, 600.0, 1.0, 340.0, 280.0])
-_CALIBRATIONS: Mapping[str, tuple[Sequence[float], Sequence[float]]] = {
-    "Cal3_S2": _FOCAL,
-    "Cal3DS2": ([*_FOCAL[0], -0.2, -0.05, -1e-2, -1e-2], [*_FOCAL[1], 0.2, 0.05, 1e-2, 1e-2]),
-    "Cal3Bundler": ([300.0, -0.2, -0.05, 0.0, 0.0], [600.0, 0.2, 0.05, 100.0, 100.0]),
-}
+        return np.array(manifold.form.draw_tangent(self, angle, case.offset))
 
 
 def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:
@@ -132,10 +102,11 @@ def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:
         values: dict[str, Value] = {}
         for name, manifold in manifolds.items():
             kind = manifold.form.name
-            if kind not in base and case.angle is not None and kinds.count(kind) == 1 and _turns(manifold):
+            form = manifold.form
+            if kind not in base and case.angle is not None and kinds.count(kind) == 1 and form.turns:
                 base[kind] = _identity(manifold)
-            asked = case.offset if issubclass(manifold, Vector) else case.angle
-            if kind in base and kind not in _CALIBRATIONS and asked is not None:
+            asked = case.offset if form.flat else case.angle
+            if kind in base and asked is not None:
                 values[name] = base[kind].retract(draw.tangent(manifold, case))
             else:
                 values[name] = draw.element(manifold, case.spread)
@@ -145,17 +116,13 @@ def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:
     return sample
 
 
-def _turns(manifold: type[Manifold]) -> bool:
-    return isinstance(manifold.form, PoseForm | RotationForm)
-
-
 def _identity(manifold: Any) -> Any:
     return manifold.identity()
 
 
 def negated(values: Mapping[str, Value], draw: Draw, *, always: bool = False) -> dict[str, Value]:
     """The same rotations, some of them by the other quaternion; at least one where ``always``."""
-    names = [name for name, v in values.items() if v.form.name in _QUATERNIONS]
+    names = [name for name, v in values.items() if v.form.quaternions]
     chosen = {name for name in names if draw.uniform(0, 1) < 0.5}
     if always and names and not chosen:
         chosen = {names[int(draw.uniform(0, len(names)))]}
@@ -163,7 +130,8 @@ def negated(values: Mapping[str, Value], draw: Draw, *, always: bool = False) ->
 
 
 def _other_quaternion(v: Value) -> Value:
-    return type(v).holding([*(-c for c in v.coords[:4]), *v.coords[4:]])
-
-
-_QUATERNIONS = ("SO3", "SE3")
+    """The same element with -q for each of its quaternions."""
+    coords = list(v.coords)
+    for start in v.form.quaternions:
+        coords[start : start + 4] = [-c for c in coords[start : start + 4]]
+    return type(v).holding(coords)

@@ -9,7 +9,30 @@ import pytest
 import sympy
 from scipy.linalg import expm
 
-from liegen.manifolds import R2, R3, S2, SE2, SE3, SO2, SO3, Cal3_S2, Cal3Bundler, Cal3DS2
+from liegen.manifolds import (
+    R2,
+    R3,
+    S2,
+    SE2,
+    SE3,
+    SE23,
+    SO2,
+    SO3,
+    Cal3_S2,
+    Cal3Bundler,
+    Cal3DS2,
+    Gal3,
+    NavState,
+    Product,
+)
+
+
+class Posed(Product):
+    """A product of groups is a group."""
+
+    pose: SE3
+    vel: R3
+    offset: R2
 
 
 def unit(n, *entries):
@@ -28,7 +51,22 @@ GROUPS = {
     SE2: [unit(3, (0, 2, 1)), unit(3, (1, 2, 1)), unit(3, (1, 0, 1), (0, 1, -1))],
     SO3: [unit(3, *s) for s in SPIN],
     SE3: [unit(4, *s) for s in SPIN] + [unit(4, (k, 3, 1)) for k in range(3)],
+    SE23: [unit(5, *s) for s in SPIN] + [unit(5, (k, c, 1)) for c in (3, 4) for k in range(3)],
 }
+GROUPS[NavState] = GROUPS[SE23]
+GROUPS[Gal3] = [
+    *(unit(5, *s) for s in SPIN),
+    *(unit(5, (k, c, 1)) for c in (4, 3) for k in range(3)),
+    unit(5, (3, 4, 1)),
+]
+GROUPS[Posed] = [
+    np.pad(E, (start, 11 - start - len(E)))
+    for part, start in ((SE3, 0), (R3, 4), (R2, 8))
+    for E in GROUPS[part]
+]
+#: The tangent's rotation coordinates, and the number of stored numbers that make a unit rotation.
+SPINS = {SO2: ([0], 2), SE2: ([2], 2)}
+SPINS |= dict.fromkeys((SO3, SE3, SE23, NavState, Gal3, Posed), ([0, 1, 2], 4))
 ANGLES = (0.0, 1e-160, 1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.7320508, 2.9, np.pi - 1e-3, np.pi - 1e-9)
 
 group = pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)
@@ -38,16 +76,11 @@ def hat(G, d):
     return sum(x * E for x, E in zip(d, GROUPS[G], strict=True))
 
 
-def spin_of(G):
-    """Indices of the tangent's rotation coordinates."""
-    return {SO2: [0], SE2: [2], SO3: [0, 1, 2], SE3: [0, 1, 2]}.get(G, [])
-
-
 def tangents(G, seed=0, angles=ANGLES):
     rng = np.random.default_rng(seed)
     for angle in angles:
         d = rng.normal(size=G.form.dim) * 2
-        k = spin_of(G)
+        k, _ = SPINS.get(G, ([], 0))
         if k:
             d[k] *= angle / np.linalg.norm(d[k])
         yield d
@@ -156,7 +189,16 @@ def test_mpmath_keeps_fifty_digits(G):
             assert max(abs(a - b) for a, b in zip(back, exact, strict=True)) < mpmath.mpf(10) ** -46
 
 
-@pytest.mark.parametrize("G", [SO2, SE2, SO3, SE3], ids=lambda G: G.__name__)
+@group
+def test_jacobians_are_inverses_to_fifty_digits(G):
+    with mpmath.workdps(50):
+        for d in tangents(G, angles=(0.0, 1e-160, 1e-20, 1e-9, 1e-3, 1.0, 3.1)):
+            exact = [mpmath.mpf(x) for x in d]
+            product = mpmath.matrix(G.form.Jr(exact)) * mpmath.matrix(G.form.Jr_inv(exact))
+            assert mpmath.mnorm(product - mpmath.eye(G.form.dim)) < mpmath.mpf(10) ** -45
+
+
+@pytest.mark.parametrize("G", SPINS, ids=lambda G: G.__name__)
 def test_identities_proved_in_sympy(G):
     """R^T R = I, Ad(ab) = Ad(a) Ad(b), a a^-1 = 1, for all elements: polynomials modulo |q|^2 = 1."""
 
@@ -164,7 +206,7 @@ def test_identities_proved_in_sympy(G):
         return sympy.symbols([f"{name}{s}" for s in G.form.storage], real=True)
 
     a, b = element("a"), element("b")
-    n = 4 if G in (SO3, SE3) else 2
+    n = SPINS[G][1]
     units = [sum(x * x for x in q[:n]) - 1 for q in (a, b)]
 
     def zero(matrix):
@@ -173,7 +215,7 @@ def test_identities_proved_in_sympy(G):
     def ad(x):
         return sympy.Matrix(G.form.adjoint_matrix(x))
 
-    k = {SO2: 2, SE2: 2, SO3: 3, SE3: 3}[G]
+    k = 2 if n == 2 else 3
     R = sympy.Matrix(G.form.matrix(a))[:k, :k]
     assert zero(R.T * R - sympy.eye(k))
     assert zero(ad(G.form.compose(a, b)) - ad(a) * ad(b))

@@ -9,14 +9,43 @@ import numpy as np
 
 import liegen.manifolds as lm
 from liegen.define import factor
-from liegen.manifolds import R1, R2, R3, S2, SE2, SE3, SO2, SO3, Cal3_S2, Cal3Bundler, Cal3DS2, Vector
+from liegen.manifolds import (
+    R1,
+    R2,
+    R3,
+    S2,
+    SE2,
+    SE3,
+    SE23,
+    SO2,
+    SO3,
+    Cal3_S2,
+    Cal3Bundler,
+    Cal3DS2,
+    Gal3,
+    Vector,
+)
 from liegen.manifolds.vector import stack
 from liegen.verify.reference.matrix import skew
 
 mp: Any = mpmath.mp
-ORDER = {"SO2": 1, "SO3": 3, "SE2": 3, "SE3": 6}
-ROTATION = {"SO2": slice(0, 1), "SO3": slice(0, 3), "SE2": slice(2, 3), "SE3": slice(0, 3)}
-MANIFOLDS: dict[str, type[lm.Manifold]] = {"SO2": SO2, "SO3": SO3, "SE2": SE2, "SE3": SE3}
+ORDER = {"SO2": 1, "SO3": 3, "SE2": 3, "SE3": 6, "SE23": 9, "Gal3": 10}
+ROTATION = {
+    "SO2": slice(0, 1),
+    "SO3": slice(0, 3),
+    "SE2": slice(2, 3),
+    "SE3": slice(0, 3),
+    "SE23": slice(0, 3),
+    "Gal3": slice(0, 3),
+}
+MANIFOLDS: dict[str, type[lm.Manifold]] = {
+    "SO2": SO2,
+    "SO3": SO3,
+    "SE2": SE2,
+    "SE3": SE3,
+    "SE23": SE23,
+    "Gal3": Gal3,
+}
 
 
 def gap(a: Any, b: Any) -> Any:
@@ -36,6 +65,12 @@ def hat(name: str, d: Any) -> Any:
         return skew(d)
     if name == "SE2":
         return ((z, -d[2], d[0]), (d[2], z, d[1]), (z, z, z))
+    if name == "Gal3":
+        rows = zip(skew(d[:3]), d[6:9], d[3:6], strict=True)
+        return (*((*row, v, x) for row, v, x in rows), (z, z, z, z, d[9]), (z,) * 5)
+    if name == "SE23":
+        rows = zip(skew(d[:3]), d[3:6], d[6:], strict=True)
+        return (*((*row, x, v) for row, x, v in rows), (z,) * 5, (z,) * 5)
     return (*((*row, x) for row, x in zip(skew(d[:3]), d[3:], strict=True)), (z,) * 4)
 
 
@@ -69,6 +104,16 @@ def prior_se2(x: SE2, *, z: SE2) -> Vector:
 
 @factor
 def prior_se3(x: SE3, *, z: SE3) -> Vector:
+    return z.local(x)
+
+
+@factor
+def prior_se23(x: SE23, *, z: SE23) -> Vector:
+    return z.local(x)
+
+
+@factor
+def prior_gal3(x: Gal3, *, z: Gal3) -> Vector:
     return z.local(x)
 
 
@@ -176,4 +221,11 @@ def sfm_cal3_bundler(x: SE3, p: R3, K: Cal3Bundler, *, z: R2) -> Vector:
     return K.uncalibrate(q[:2] / q[2]) - z
 
 
-PRIORS: dict[str, Any] = {"SO2": prior_so2, "SO3": prior_so3, "SE2": prior_se2, "SE3": prior_se3}
+PRIORS: dict[str, Any] = {
+    "SO2": prior_so2,
+    "SO3": prior_so3,
+    "SE2": prior_se2,
+    "SE3": prior_se3,
+    "SE23": prior_se23,
+    "Gal3": prior_gal3,
+}

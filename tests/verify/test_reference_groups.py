@@ -76,7 +76,12 @@ def test_expm_of_log_is_the_element(name: str, angle: str, length: float) -> Non
 
 
 def _translation(name: str) -> list[slice]:
-    return {"SE2": [slice(0, 2)], "SE3": [slice(3, 6)]}.get(name, [])
+    return {
+        "SE2": [slice(0, 2)],
+        "SE3": [slice(3, 6)],
+        "SE23": [slice(3, 6), slice(6, 9)],
+        "Gal3": [slice(3, 6), slice(6, 9), slice(9, 10)],
+    }.get(name, [])
 
 
 @pytest.mark.parametrize("axis", [(1, 0, 0), (0, -1, 0), (0, 0, 1), (3, -4, 0)])

@@ -150,6 +150,16 @@ def stacked(*blocks: Matrix) -> Matrix:
     return tuple(row for block in blocks for row in block)
 
 
+def block_diagonal(*blocks: Matrix) -> Matrix:
+    """Blocks along the diagonal, structural zeros elsewhere."""
+    widths = [len(block[0]) for block in blocks]
+    return tuple(
+        (*(0,) * sum(widths[:k]), *row, *(0,) * sum(widths[k + 1 :]))
+        for k, block in enumerate(blocks)
+        for row in block
+    )
+
+
 def multiply_cost(a: Matrix, b: Matrix) -> int:
     """Number of scalar products in A B that structure does not make free."""
     heavy_a = [[int(not is_structural(x)) for x in row] for row in a]

@@ -7,7 +7,10 @@ from .calibration import Cal3Bundler as Cal3Bundler
 from .calibration import Cal3DS2 as Cal3DS2
 from .calibration import Calibration as Calibration
 from .condition import Condition as Condition
+from .extended import SE23 as SE23
+from .extended import NavState as NavState
 from .form import ManifoldForm as ManifoldForm
+from .galilean import Gal3 as Gal3
 from .group import Group as Group
 from .group import Manifold as Manifold
 from .groups import SE2 as SE2
@@ -20,6 +23,7 @@ from .node import Leaf as Leaf
 from .node import Node as Node
 from .node import Operation as Operation
 from .node import Value as Value
+from .product import Product as Product
 from .s2 import S2 as S2
 from .vector import R1 as R1
 from .vector import R2 as R2

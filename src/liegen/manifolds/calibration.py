@@ -72,6 +72,7 @@ class _Cal3S2Form(AdditiveForm):
     storage = ("fx", "fy", "s", "u0", "v0")
     tangent = ("fx [px]", "fy [px]", "s [px]", "u0 [px]", "v0 [px]")
     note = "Cal3_S2: stored fx, fy, s, u0, v0 [px]; tangent: the same, added"
+    usual = ((300.0, 300.0, -1.0, 300.0, 200.0), (600.0, 600.0, 1.0, 340.0, 280.0))
 
 
 class Cal3_S2(Calibration):
@@ -87,6 +88,10 @@ class _Cal3DS2Form(AdditiveForm):
     storage = ("fx", "fy", "s", "u0", "v0", "k1", "k2", "p1", "p2")
     tangent = ("fx [px]", "fy [px]", "s [px]", "u0 [px]", "v0 [px]", "k1", "k2", "p1", "p2")
     note = "Cal3DS2: stored fx, fy, s, u0, v0 [px], k1, k2, p1, p2; tangent: the same, added"
+    usual = (
+        (300.0, 300.0, -1.0, 300.0, 200.0, -0.2, -0.05, -1e-2, -1e-2),
+        (600.0, 600.0, 1.0, 340.0, 280.0, 0.2, 0.05, 1e-2, 1e-2),
+    )
 
 
 class Cal3DS2(Calibration):
@@ -102,6 +107,7 @@ class _Cal3BundlerForm(AdditiveForm):
     storage = ("f", "k1", "k2", "u0", "v0")
     tangent = ("f [px]", "k1", "k2")
     note = "Cal3Bundler: stored f [px], k1, k2, u0, v0 [px]; tangent: f, k1, k2, added; u0, v0 fixed"
+    usual = ((300.0, -0.2, -0.05, 0.0, 0.0), (600.0, 0.2, 0.05, 100.0, 100.0))
 
 
 class Cal3Bundler(Calibration):

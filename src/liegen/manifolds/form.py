@@ -10,7 +10,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
@@ -19,11 +22,35 @@ Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
 Blocks = tuple[Chain | None, ...]
 #: The coordinates of a result from those of its operands.
-Compute = Callable[[Any], Vector] | Callable[[Any, Any], Vector] | Callable[[Any, Any, Any], Vector]
+Compute = (
+    Callable[[Any], Vector]
+    | Callable[[Any, Any], Vector]
+    | Callable[[Any, Any, Any], Vector]
+    | Callable[[Any, Any, Any, Any], Vector]
+)
 #: The blocks from the result and the operands.
 Rule = (
-    Callable[[Any, Any], Blocks] | Callable[[Any, Any, Any], Blocks] | Callable[[Any, Any, Any, Any], Blocks]
+    Callable[[Any, Any], Blocks]
+    | Callable[[Any, Any, Any], Blocks]
+    | Callable[[Any, Any, Any, Any], Blocks]
+    | Callable[[Any, Any, Any, Any, Any], Blocks]
 )
+
+
+class Source(Protocol):
+    """A source of random numbers, as :class:`liegen.samples.Draw` is."""
+
+    def uniform(self, low: float, high: float) -> float:
+        """A number in [low, high)."""
+        ...
+
+    def unit(self, n: int) -> NDArray[np.float64]:
+        """A unit vector with n components."""
+        ...
+
+    def vector(self, n: int, length: float | None = None, spread: float = 1.0) -> NDArray[np.float64]:
+        """A vector of the given length, or of a size around ``spread``."""
+        ...
 
 
 class ManifoldForm(ABC):
@@ -33,6 +60,10 @@ class ManifoldForm(ABC):
     storage: tuple[str, ...]  # names of the stored scalars
     tangent: tuple[str, ...]  # names of the tangent's coordinates, with units
     note: str = ""  # one line on storage and chart for headers and documentation
+    parts: tuple[ManifoldForm, ...] = ()  # of a product
+    quaternions: tuple[int, ...] = ()  # where a quaternion q begins in the storage; -q is the same element
+    flat: bool = False  # the chart is addition
+    turns: bool = False  # a group whose elements rotate
 
     @property
     def dim(self) -> int:
@@ -69,9 +100,19 @@ class ManifoldForm(ABC):
         """Rule (result, x, y) -> blocks of ``local``; None: differentiation through the storage."""
         return None
 
+    def draw(self, source: Source, spread: float) -> Sequence[float]:
+        """The storage of any element; positions are of size ``spread`` [m]."""
+        return source.unit(self.size).tolist()
+
+    def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
+        """A tangent vector with this rotation angle [rad] and length of its other vectors (None: any)."""
+        return (source.unit(self.dim) * angle).tolist()
+
 
 class GroupForm(ManifoldForm):
     """A Lie group."""
+
+    exponential: bool = True  # the chart is x exp(d)
 
     @abstractmethod
     def identity(self) -> Vector:
@@ -180,6 +221,7 @@ def _negated(chain: Chain) -> Chain:
 class PoseForm(GroupForm):
     """A semidirect product of a rotation and a translation: x = (R, t), x p = R p + t."""
 
+    turns = True
     rotation: RotationForm
     rotation_first: bool
 
@@ -225,6 +267,16 @@ class PoseForm(GroupForm):
         d = tuple(u - s for s, u in zip(self.translation_of(a), self.translation_of(b), strict=True))
         return self.join(self.rotation.compose(q, self.rotation_of(b)), self.rotation.rotate(q, d))
 
+    def draw(self, source: Source, spread: float) -> Sequence[float]:
+        """A rotation, and a position of size ``spread`` [m]."""
+        return (*self.rotation.draw(source, spread), *source.vector(self.rotation.space, spread=spread))
+
+    def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
+        """A rotation by ``angle`` [rad], and a translation of length ``offset`` [m]."""
+        turn = self.rotation.draw_tangent(source, angle, offset)
+        move = source.vector(self.rotation.space, offset)
+        return (*turn, *move) if self.rotation_first else (*move, *turn)
+
     def matrix(self, a: Coords) -> Matrix:
         """The homogeneous matrix [[R, t], [0, 1]]."""
         R = self.rotation.matrix(self.rotation_of(a))
@@ -235,6 +287,7 @@ class PoseForm(GroupForm):
 class RotationForm(GroupForm):
     """A group of rotations of the plane or of space."""
 
+    turns = True
     space: int  # dimension of the vectors that it rotates
 
     @abstractmethod

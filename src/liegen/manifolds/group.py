@@ -37,7 +37,7 @@ def as_tangent(v: VectorLike, form: ManifoldForm, where: str) -> Vector:
 
 def same_manifold(operation: str, x: Value, y: Value) -> None:
     """Raise DefinitionError unless both values are of one manifold."""
-    if x.form.name != y.form.name:
+    if x.form != y.form:
         raise DefinitionError(
             f"{here()}: {operation} needs two elements of one manifold, got {called(x)} and {called(y)}; "
             f"give it two of {x.form.name}"

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from liegen.algebra import Scalar, fabs, lt, select, sqrt
 from liegen.algebra.linear import Chain, Matrix, Vector, dot, eye, negate, scale
 
-from .form import Coords, GroupForm
+from .form import Coords, GroupForm, Source
 
 _TINY, _HUGE, _SHIFT = 2.0**-900, 2.0**900, 2.0**600
 
 
 class RForm(GroupForm):
     """Vectors with n components; every chart is the identity."""
+
+    flat = True
 
     def __init__(self, n: int) -> None:
         self.name = f"R{n}"
@@ -53,6 +57,13 @@ class RForm(GroupForm):
         """The translation as a homogeneous matrix."""
         rows = tuple((*row, x) for row, x in zip(eye(self.dim), a, strict=True))
         return (*rows, (0,) * self.dim + (1,))
+
+    def draw(self, source: Source, spread: float) -> Sequence[float]:
+        """Vectors of the plane and of space are positions; others are weights, pixels, biases."""
+        return source.vector(self.dim, spread=spread if self.dim in (2, 3) else 1.0).tolist()
+
+    def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
+        return source.vector(self.dim, offset).tolist()
 
 
 def scaled_length(v: Coords) -> tuple[Vector, Scalar, Scalar]:

@@ -6,55 +6,12 @@ part and C the derivative of M in the direction of the translation part.
 
 from __future__ import annotations
 
-from liegen.algebra import Scalar
-from liegen.algebra.linear import (
-    Chain,
-    Matrix,
-    Vector,
-    add,
-    beside,
-    dot,
-    eye,
-    matvec,
-    negate,
-    scale,
-    skew,
-    stacked,
-    times,
-    transpose,
-    zeros,
-)
-from liegen.coefficients import inverse_jacobian, stumpff
+from liegen.algebra.linear import Chain, Matrix, Vector, dot, matvec, transpose
+from liegen.coefficients import stumpff
 
+from . import dual
 from .form import Coords, PoseForm
 from .so3_form import SO3Form, series
-
-
-def _dual(phi: Coords, rho: Coords, a: Scalar, b: Scalar, da: Scalar, db: Scalar) -> Matrix:
-    """Derivative of ``series(phi, a, b)`` in the direction ``rho``.
-
-    With da, db for twice the slopes of a, b by s = |phi|^2 it is
-    a [rho]x + da (phi.rho) [phi]x + b (phi rho^T + rho phi^T) - 2 b (phi.rho) I
-    + db (phi.rho) (phi phi^T - s I).
-    """
-    m = dot(phi, rho)
-    slope = db * m
-    k = b * m * 2 + slope * dot(phi, phi)
-    (x, y, z), (u, v, w) = phi, rho
-    bx, by, bz = b * x, b * y, b * z
-    ex, ey, ez = slope * x, slope * y, slope * z
-    xy, xz, yz = bx * v + by * u + ex * y, bx * w + bz * u + ex * z, by * w + bz * v + ey * z
-    ax, ay, az = add(scale(a, rho), scale(times(da, m), phi))
-    return (
-        (bx * u * 2 + ex * x - k, xy - az, xz + ay),
-        (xy + az, by * v * 2 + ey * y - k, yz - ax),
-        (xz - ay, yz + ax, bz * w * 2 + ez * z - k),
-    )
-
-
-def _lower(diagonal: Matrix, corner: Matrix) -> Matrix:
-    """[[M, 0], [C, M]]."""
-    return stacked(beside(diagonal, zeros(3, 3)), beside(corner, diagonal))
 
 
 class SE3Form(PoseForm):
@@ -67,6 +24,7 @@ class SE3Form(PoseForm):
         "SE3: stored quaternion (x, y, z, w), translation (x, y, z); "
         "tangent: rotation [rad], translation [m]; x.retract(d) = x exp(d)"
     )
+    quaternions = (0,)
     rotation = SO3Form()
     rotation_first = True
 
@@ -83,22 +41,13 @@ class SE3Form(PoseForm):
 
     def adjoint(self, a: Coords) -> Chain:
         """[[R, 0], [[t]x R, R]] as a product (micro Lie, eq. 175)."""
-        R, z = self.rotation.matrix(a[:4]), zeros(3, 3)
-        return (_lower(eye(3), skew(a[4:])), stacked(beside(R, z), beside(z, R)))
+        return dual.adjoint(self.rotation.matrix(a[:4]), a[4:])
 
     def adjoint_inverse(self, a: Coords) -> Chain:
-        Rt, z = transpose(self.rotation.matrix(a[:4])), zeros(3, 3)
-        return (stacked(beside(Rt, z), beside(z, Rt)), _lower(eye(3), skew(negate(a[4:]))))
+        return dual.adjoint_inverse(self.rotation.matrix(a[:4]), a[4:])
 
     def Jr(self, d: Coords) -> Matrix:
-        """The slopes of -c2 and c3 follow from c_k' = (k c_{k+2} - c_{k+1}) / 2."""
-        phi, rho = d[:3], d[3:]
-        _, _, c2, c3, c4, c5 = stumpff(dot(phi, phi), 5)
-        M = series(phi, -c2, c3)
-        return _lower(M, _dual(phi, rho, -c2, c3, c3 - 2 * c4, 3 * c5 - c4))
+        return dual.Jr(d[:3], d[3:])
 
     def Jr_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
-        """M = I + [phi]x / 2 + D [phi]x^2; E = 2 dD/ds."""
-        phi, rho = d[:3], d[3:]
-        D, E = inverse_jacobian(dot(phi, phi), principal=principal)
-        return _lower(series(phi, 0.5, D), _dual(phi, rho, 0.5, D, 0, E))
+        return dual.Jr_inv(d[:3], d[3:], principal=principal)

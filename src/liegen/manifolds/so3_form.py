@@ -30,6 +30,7 @@ class SO3Form(RotationForm):
     storage = ("qx", "qy", "qz", "qw")
     tangent = ("rx [rad]", "ry [rad]", "rz [rad]")
     note = "SO3: stored unit quaternion (x, y, z, w); tangent: rotation vector [rad]; x.retract(d) = x exp(d)"
+    quaternions = (0,)
     space = 3
 
     def identity(self) -> Vector:

@@ -54,7 +54,7 @@ def named_values(graph: Graph) -> dict[int, str]:
     shared = [
         n
         for n in nodes
-        if uses[id(n)] > 1 and not isinstance(n.operation, Leaf) and n.operation.name != "take"
+        if uses[id(n)] > 1 and not isinstance(n.operation, Leaf) and n.operation.name not in ("take", "part")
     ]
     return {id(n): outputs.get(id(n)) or next(free) for n in shared}
 

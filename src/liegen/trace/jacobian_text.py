@@ -12,9 +12,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from string import Formatter
 
-from liegen.manifolds import SO2, Leaf, Node, Vector
-from liegen.manifolds.additive_form import AdditiveForm
+from liegen.manifolds import SO2, Leaf, Node
 from liegen.manifolds.form import GroupForm
+from liegen.manifolds.gal3_form import Gal3Form
+from liegen.manifolds.se23_form import SE23Form
 
 from .formulas import free_names, named_values, texts_of
 from .graph import Graph
@@ -63,6 +64,23 @@ _SPACE: Mapping[str, Labels] = {
     "direction": ("(B({r}) / |{0}|)",),
     "vector": ("B({0})^T",),
 }
+_EXTENDED: Mapping[str, Labels] = {
+    "rotation": ("[I, 0, 0]",),
+    "position": ("R({0}) [0, I, 0]",),
+    "velocity": ("R({0}) [0, 0, I]",),
+    "pose_of": ("[I, 0, 0; 0, I, 0]",),
+    "extended_pose": ("[I; 0; 0]", "[0; R({0})^T; 0]", "[0; 0; R({0})^T]"),
+}
+_GALILEAN: Mapping[str, Labels] = {
+    "rotation": ("[I, 0, 0, 0]",),
+    "position": ("[0, R({0}), 0, {0}.velocity]",),
+    "velocity": ("R({0}) [0, 0, I, 0]",),
+    "time": ("[0, 0, 0, 1]",),
+    "pose_of": ("[I, 0, 0, 0; 0, I, 0, R({0})^T {0}.velocity]",),
+    "event": (
+        "[I; 0; 0; 0]", "[0; R({0})^T; 0; 0]", "[0; 0; R({0})^T; 0]", "[0; -R({0})^T {2}; 0; 1]",
+    ),
+}  # fmt: skip
 _VECTOR: Mapping[str, Labels] = {
     "add": ("I", "I"),
     "sub": ("I", "-I"),
@@ -189,7 +207,10 @@ def labels(node: Node) -> Labels:
     name, operands = node.operation.name, node.operands
     if name == "take":
         return (f"I[{_positions(node.operation.parameters)}]",)
-    if name == "stack":
+    if name == "part":
+        _, moved = node.operation.parameters
+        return (f"I[{_positions(moved)}]",)
+    if name in ("stack", "product"):
         return tuple(_columns(node))
     first, dim = operands[0].manifold, node.manifold.form.dim
     # R3.exp, the exponential of a group, is shown with its class
@@ -197,10 +218,15 @@ def labels(node: Node) -> Labels:
         dims = [n.manifold.form.dim for n in operands]
         return tuple(_slope(text, k, dims, dim) for k, text in enumerate(_SLOPE[name]))
     own = node.manifold if name == "exp" else first
-    flat = issubclass(own, (Vector, SO2)) or isinstance(own.form, AdditiveForm)
+    flat = own.form.flat or issubclass(own, SO2)
     curved: Mapping[str, Labels] = _GROUP if isinstance(own.form, GroupForm) else {}
+    if isinstance(own.form, GroupForm) and not own.form.exponential and name in ("retract", "local"):
+        curved = {}
     planar = own.form.name in ("SO2", "SE2") or node.manifold.form.name in ("SO2", "SE2")
-    for table in (_ADDITIVE if flat else curved, _PLANE if planar else _SPACE, _VECTOR):
+    extended = isinstance(own.form, SE23Form) or isinstance(node.manifold.form, SE23Form)
+    galilean = isinstance(own.form, Gal3Form) or isinstance(node.manifold.form, Gal3Form)
+    parts = _PLANE if planar else _EXTENDED if extended else _GALILEAN if galilean else _SPACE
+    for table in (_ADDITIVE if flat else curved, parts, _VECTOR):
         if name in table:
             return table[name]
     places = ", ".join(f"{{{k}}}" for k in range(len(operands)))

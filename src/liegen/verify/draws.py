@@ -102,7 +102,7 @@ def stored(function: AnyFunction, values: Mapping[str, Value]) -> dict[str, tupl
     doubles: dict[str, tuple[float, ...]] = {}
     for p in function.graph.parameters:
         value = values.get(p.name)
-        if not isinstance(value, Value) or value.form.name != p.manifold.form.name:
+        if not isinstance(value, Value) or value.form != p.manifold.form:
             given = "nothing" if value is None else f"a {type(value).__name__}"
             raise DefinitionError(
                 f"{function.graph.site}: {function.name}: its sampler gave {given} for {p.name!r}; "

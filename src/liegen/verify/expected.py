@@ -35,7 +35,7 @@ class Block:
     """An output or a Jacobian at all samples, entries flat, for both branches of logarithms at a half turn.
 
     ``bound`` is absolute; ``lost`` is its part for the formula's own rounding, relative to the rest.
-    ``kept`` is false where the reference is not finite. ``quaternion``: q and -q are equal.
+    ``kept`` is false where the reference is not finite. ``quaternions``: where each begins; q equals -q.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Block:
     bound: Array  # (2, samples)
     lost: Array  # (samples,)
     kept: NDArray[np.bool_]  # (samples,)
-    quaternion: bool = False
+    quaternions: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +80,8 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
         bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))
         lost = extra / np.broadcast_to(plain, bound.shape).min(axis=0)
         kept = np.isfinite(stacked).all(axis=(0, 2)) & np.isfinite(slack)
-        quaternion = is_value and dict(graph.outputs)[name].manifold.form.name in ("SO3", "SE3")
-        blocks.append(Block(name, is_value, stacked, bound, lost, kept, quaternion))
+        quaternions = dict(graph.outputs)[name].manifold.form.quaternions if is_value else ()
+        blocks.append(Block(name, is_value, stacked, bound, lost, kept, quaternions))
     skipped = _reasons(samples, slack, blocks)
     return Expected(tuple(samples), tuple(blocks), slack, skipped)
 
@@ -198,9 +198,10 @@ def _ratio(block: Block, computed: Array) -> Array:
     flat = computed.reshape(1, computed.shape[0], -1)
     with np.errstate(all="ignore"):
         error = np.abs(flat - block.expected)
-        if block.quaternion:
-            other = np.concatenate([-flat[..., :4], flat[..., 4:]], axis=-1)
-            swapped = np.abs(other - block.expected)
-            error = np.where((swapped.max(axis=-1) < error.max(axis=-1))[..., None], swapped, error)
+        for start in block.quaternions:
+            q = slice(start, start + 4)
+            swapped = np.abs(-flat[..., q] - block.expected[..., q])
+            nearer = (swapped.max(axis=-1) < error[..., q].max(axis=-1))[..., None]
+            error[..., q] = np.where(nearer, swapped, error[..., q])
         ratio = error.max(axis=-1) / block.bound
     return np.where(np.isfinite(ratio), ratio, np.inf)

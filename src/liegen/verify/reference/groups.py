@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from . import extended, galilean
 from .calls import Call, Rule, plain
 from .matrix import Element, Matrix, Vector, add, matvec, normalised, sub, transpose
 from .spaces import GroupSpace, group_of, pose, rotation_of, space_of, translation_of
@@ -65,6 +66,32 @@ def _unrotate(R: Matrix, v: Vector) -> Vector:
     return matvec(transpose(R), v)
 
 
+def _rotation(call: Call) -> Matrix:
+    """The rotation block: 2 x 2 of a pose of the plane, 3 x 3 of all other matrices."""
+    (T,) = call.values
+    return rotation_of(T) if len(T) < 5 else extended.rotation_of(T)
+
+
+def _column(name: str) -> Rule:
+    return lambda call: extended.column_of(
+        call.values[0], _COLUMNS[name, call.operands[0].manifold.form.name]
+    )
+
+
+def _pose_of(call: Call) -> Matrix:
+    return pose(_rotation(call), _column("position")(call))
+
+
+#: Where a vector stands in the 5 x 5 matrices.
+_COLUMNS: Mapping[tuple[str, str], int] = {
+    ("position", "SE23"): 3,
+    ("velocity", "SE23"): 4,
+    ("position", "NavState"): 3,
+    ("velocity", "NavState"): 4,
+    ("position", "Gal3"): 4,
+    ("velocity", "Gal3"): 3,
+}
+
 OPERATIONS: Mapping[str, Rule] = {
     "compose": _compose,
     "inverse": _inverse,
@@ -76,7 +103,15 @@ OPERATIONS: Mapping[str, Rule] = {
     "rotate": plain(matvec),
     "unrotate": plain(_unrotate),
     "pose": plain(pose),
-    "rotation": plain(rotation_of),
+    "rotation": _rotation,
+    "part": lambda call: call.values[0][call.operation.parameters[0]],
+    "product": lambda call: tuple(call.values),
+    "extended_pose": plain(extended.extended),
+    "event": plain(galilean.event),
+    "time": lambda call: (call.values[0][3][4],),
+    "pose_of": _pose_of,
+    "position": _column("position"),
+    "velocity": _column("velocity"),
     "translation": plain(translation_of),
     "transform_from": plain(_transform_from),
     "transform_to": plain(_transform_to),

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from . import sphere
+from . import extended, galilean, sphere
+from .contract import GroupSpace, Space, Store
 from .logarithms import PRINCIPAL, Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
     Element,
@@ -26,33 +27,10 @@ from .matrix import (
     sub,
     transpose,
 )
+from .products import product_group, product_space
 
 if TYPE_CHECKING:
-    from liegen.manifolds import Value
-
-#: Store an element; of two storages (q and -q) the one nearer to the second argument.
-Store = Callable[[Element, Sequence[float] | None], Vector]
-
-
-@dataclass(frozen=True)
-class Space:
-    """A manifold: elements from stored numbers and back, and the default chart."""
-
-    dim: Callable[[Element], int]
-    load: Callable[[Vector], Element]
-    store: Store
-    retract: Callable[[Element, Vector, Branch], Element]
-    local: Callable[[Element, Element, Branch], Vector]
-
-
-@dataclass(frozen=True)
-class GroupSpace(Space):
-    """A Lie group."""
-
-    compose: Callable[[Element, Element], Element]
-    inverse: Callable[[Element], Element]
-    exp: Callable[[Vector], Element]
-    log: Callable[[Element, Branch], Vector]
+    from liegen.manifolds import ManifoldForm, Value
 
 
 def _matrix_group(
@@ -167,6 +145,32 @@ _SE3 = _matrix_group(
     lambda d: _exp_pose(skew(d[:3]), length(d[:3]), d[3:]),
     log_se3,
 )
+_SE23 = _matrix_group(
+    9,
+    lambda c: extended.extended(_load_so3(c[:4]), c[4:7], c[7:]),
+    lambda T, like: (
+        *_store_so3(extended.rotation_of(T), like), *extended.column_of(T, 3), *extended.column_of(T, 4),
+    ),
+    extended.inverse,
+    extended.exp,
+    extended.log,
+)  # fmt: skip
+_NAV_STATE = replace(
+    _SE23,
+    retract=extended.retract_componentwise,
+    local=extended.local_componentwise,
+)
+_GAL3 = _matrix_group(
+    10,
+    lambda c: galilean.event(_load_so3(c[:4]), c[4:7], c[7:10], c[10:]),
+    lambda T, like: (
+        *_store_so3(extended.rotation_of(T), like),
+        *extended.column_of(T, 4), *extended.column_of(T, 3), T[3][4],
+    ),
+    galilean.inverse,
+    galilean.exp,
+    galilean.log,
+)  # fmt: skip
 #: R^n under addition; its exponential and logarithm are the identity.
 _VECTORS = GroupSpace(
     dim=len,
@@ -206,7 +210,16 @@ def _leading(dim: int) -> Space:
     )
 
 
-GROUPS: Mapping[str, GroupSpace] = {"SO2": _SO2, "SO3": _SO3, "SE2": _SE2, "SE3": _SE3, "R": _VECTORS}
+GROUPS: Mapping[str, GroupSpace] = {
+    "SO2": _SO2,
+    "SO3": _SO3,
+    "SE2": _SE2,
+    "SE3": _SE3,
+    "SE23": _SE23,
+    "NavState": _NAV_STATE,
+    "Gal3": _GAL3,
+    "R": _VECTORS,
+}
 SPACES: Mapping[str, Space] = {
     **GROUPS,
     "S2": _S2,
@@ -218,25 +231,37 @@ SPACES: Mapping[str, Space] = {
 }
 
 
-def _key(manifold: type[Value]) -> str:
+def _key(form: ManifoldForm) -> str:
     """The name of the manifold; R1, R2, ... are all R, matrices of any size "matrix"."""
-    name = manifold.form.name.rpartition(" ")[2]
+    name = form.name.rpartition(" ")[2]
     return "R" if name[:1] == "R" and name[1:].isdigit() else name
 
 
 def space_of(manifold: type[Value]) -> Space:
     """The reference's entry for a manifold."""
-    return SPACES[_key(manifold)]
+    return _space(manifold.form)
 
 
 def group_of(manifold: type[Value]) -> GroupSpace:
     """The reference's entry for a group."""
-    return GROUPS[_key(manifold)]
+    return _group(manifold.form)
+
+
+def _space(form: ManifoldForm) -> Space:
+    return product_space(_sized(form), list(map(_space, form.parts))) if form.parts else SPACES[_key(form)]
+
+
+def _group(form: ManifoldForm) -> GroupSpace:
+    return product_group(_sized(form), list(map(_group, form.parts))) if form.parts else GROUPS[_key(form)]
+
+
+def _sized(form: ManifoldForm) -> list[tuple[int, int]]:
+    return [(part.size, part.dim) for part in form.parts]
 
 
 def is_vector(manifold: type[Value]) -> bool:
     """Whether it is some R^n."""
-    return _key(manifold) == "R"
+    return not manifold.form.parts and _key(manifold.form) == "R"
 
 
 def _numbers(coords: Sequence[float]) -> Vector:
