@@ -29,9 +29,10 @@ def list_factors(source: str | None, as_json: bool) -> None:
 @click.command()
 @click.argument("name")
 @source_argument
-def explain(name: str, source: str | None) -> None:
+@click.option("--latex", "as_latex", is_flag=True, help="Print the residual and its Jacobians in LaTeX.")
+def explain(name: str, source: str | None, as_latex: bool) -> None:
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
-    from liegen.explain import explanation
+    from liegen.explain import explanation, latex_explanation
 
     (function,) = chosen(source, [name])
-    click.echo(explanation(function), nl=False)
+    click.echo((latex_explanation if as_latex else explanation)(function), nl=False)

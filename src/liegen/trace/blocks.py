@@ -20,7 +20,7 @@ def _of(head: str, *parts: Part) -> Block:
 
 
 I, ZERO, ONE, J = IDENTITY, Block("0"), Block("1"), Block("J")  # noqa: E741
-Ad, Jr, R, B = (partial(_of, head) for head in ("Ad", "Jr", "R", "B"))
+Ad, Jr, R, matrix, B = (partial(_of, head) for head in ("Ad", "Jr", "R", "matrix", "B"))
 Jr_inverse, Jl_inverse = partial(_of, "Jr^-1"), partial(_of, "Jl^-1")
 inverse, transpose, square, skew = (partial(_of, h) for h in ("inverse", "transpose", "square", "skew"))
 product, total, quotient = (partial(_of, h) for h in ("product", "sum", "quotient"))
@@ -45,23 +45,23 @@ _GROUP: Mapping[str, Blocks] = {
     "local": (-Jl_inverse(RESULT), Jr_inverse(RESULT)),
 }
 _PLANE: Mapping[str, Blocks] = {
-    "rotate": (product(R(0), J, 1), R(0)),
-    "unrotate": (-product(J, RESULT), transpose(R(0))),
+    "rotate": (product(matrix(0), J, 1), matrix(0)),
+    "unrotate": (-product(J, RESULT), transpose(matrix(0))),
     "transform_from": (product(R(0), row(I, product(J, 1))), R(0)),
     "transform_to": (-row(I, product(J, RESULT)), transpose(R(0))),
     "rotation": (row(ZERO, ONE),),
     "translation": (product(R(0), row(I, ZERO)),),
-    "pose": (column(ZERO, ONE), column(transpose(R(0)), ZERO)),
+    "pose": (column(ZERO, ONE), column(transpose(matrix(0)), ZERO)),
     "direction": (quotient(transpose(product(J, 0)), square(length(0))),),
 }
 _SPACE: Mapping[str, Blocks] = {
-    "rotate": (-product(R(0), skew(1)), R(0)),
-    "unrotate": (skew(RESULT), transpose(R(0))),
+    "rotate": (-product(matrix(0), skew(1)), matrix(0)),
+    "unrotate": (skew(RESULT), transpose(matrix(0))),
     "transform_from": (product(R(0), row(-skew(1), I)), R(0)),
     "transform_to": (row(skew(RESULT), -I), transpose(R(0))),
     "rotation": (row(I, ZERO),),
     "translation": (product(R(0), row(ZERO, I)),),
-    "pose": (column(I, ZERO), column(ZERO, transpose(R(0)))),
+    "pose": (column(I, ZERO), column(ZERO, transpose(matrix(0)))),
     "direction": (quotient(B(RESULT), length(0)),),
     "vector": (transpose(B(0)),),
 }

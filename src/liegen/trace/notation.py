@@ -103,6 +103,8 @@ HEADS: Mapping[str, tuple[Layout, Layout]] = {
     "transpose": (Layout("#0^T", ATOM, (POWER,)), Layout(r"#0^{\top}", POWER, (ATOM,))),
     "square": (Layout("#0^2", POWER, (POWER,)), Layout("#0^{2}", POWER, (ATOM,))),
     "R": (Layout("R(#0)"), Layout(r"\mathrm{R}_{#0}")),
+    # the matrix of a rotation, and of the rotation of a pose
+    "matrix": (Layout("R(#0)"), Layout("#0", ATOM, (ATOM,))),
     "B": (Layout("B(#0)"), Layout("B_{#0}")),
     "unit row": (
         Layout("unit(#0)^T"),
@@ -162,12 +164,16 @@ def in_tall_parentheses(text: str) -> str:
     return rf"\left({text}\right)"
 
 
+#: What mathematics calls the charts of a manifold.
+_MAPS: Mapping[str, str] = {"local": "Log", "retract": "Exp"}
+
+
 def in_mathematics(detail: str) -> str:
-    r"""Names between brackets upright, with their underscores: ``1[uncalibrate]``."""
+    r"""``1[uncalibrate]`` with the number as subscript and the name upright; other details as they are."""
     found = re.fullmatch(r"(\d*)\[(\w+)\]", detail)
     if not found:
         return detail
-    number, name = found[1], found[2].replace("_", r"\_")
+    number, name = found[1], _MAPS.get(found[2], found[2]).replace("_", r"\_")
     return (f"_{{{number}}}" if number else "") + rf"\left[\mathrm{{{name}}}\right]"
 
 
