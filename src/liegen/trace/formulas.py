@@ -11,7 +11,8 @@ from .graph import Graph
 from .notation import ATOM, Text
 
 #: How strongly the signs of the user's own notation bind.
-_INFIX = {" + ": 1, " - ": 1, "-": 2, " * ": 3, " / ": 3, " @ ": 4}
+_INFIX = {" < ": 0, " <= ": 0, " + ": 1, " - ": 1, "-": 2, " * ": 3, " / ": 3, " @ ": 4, "M @ ": 4}
+_LOGIC = (" & ", " | ", "~")
 _CALL = ATOM
 #: The text of one node from the texts of its operands.
 Show = Callable[[Node, Mapping[int, Text]], Text]
@@ -77,7 +78,11 @@ def show_as_written(node: Node, texts: Mapping[int, Text]) -> Text:
 
 def _operand(pattern: str, k: int, strength: int, operand: Text) -> str:
     """Parentheses where the place binds more strongly than the operand."""
-    after = pattern.partition(f"{{{k}}}")[2]
-    receiver = after.startswith((".", "["))
-    needed = _CALL if receiver else strength + (k > 0) if strength < _CALL else 0
+    before, _, after = pattern.partition(f"{{{k}}}")
+    if after.startswith((".", "[")):
+        needed = _CALL
+    elif any(sign in pattern for sign in _LOGIC):
+        needed = 1
+    else:
+        needed = strength + (before != "") if strength < _CALL else 0
     return f"({operand.text})" if operand.strength < needed else operand.text
