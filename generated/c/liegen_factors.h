@@ -64,8 +64,8 @@
  *   bearing_se3_r3_gtsam: 139, with Jacobians 263
  *   between_r2: 4, with Jacobians 4
  *   between_r3: 6, with Jacobians 6
- *   between_se2: 53, with Jacobians 82
- *   between_se3: 212, with Jacobians 474
+ *   between_se2: 53, with Jacobians 76
+ *   between_se3: 212, with Jacobians 429
  *   between_so2: 13, with Jacobians 13
  *   between_so3: 89, with Jacobians 200
  *   projection_cal3_bundler: 60, with Jacobians 140

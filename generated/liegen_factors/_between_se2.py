@@ -21,7 +21,7 @@
 #   res_D_x: 3 x 3, derivative of res by the tangent of x
 #   res_D_y: 3 x 3, derivative of res by the tangent of y
 #
-# Operations: 53 (residual only), 82 (with Jacobians)
+# Operations: 53 (residual only), 76 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -147,25 +147,23 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t20 = t8 * t17 + t15 * t19
     t21 = t0 * t19 - t1 * t8
     t22 = t1 * t16 - t0 * t8
-    t23 = t1 * t13 - t0 * t11
-    t24 = t0 * t13 + t1 * t11
-    t25 = t2 * t7
-    t26 = t18 * t25 + 0.5 * t20
-    t27 = t20 * t25 + t18 * (-0.5)
+    t23 = t2 * t7
+    t24 = t18 * t23 + 0.5 * t20
+    t25 = t20 * t23 + t18 * (-0.5)
     res[0] = t18
     res[1] = t20
     res[2] = t2
     res_D_x[0, 0] = t21
     res_D_x[0, 1] = t22
-    res_D_x[0, 2] = t8 * t23 + t16 * t24 - t26
+    res_D_x[0, 2] = t11 * t22 - t13 * t21 - t24
     res_D_x[1, 0] = -t22
     res_D_x[1, 1] = t21
-    res_D_x[1, 2] = t16 * t23 - t8 * t24 - t27
+    res_D_x[1, 2] = t13 * t22 + t11 * t21 - t25
     res_D_x[2, 2] = -1.0
     res_D_y[0, 0] = t8
     res_D_y[0, 1] = t19
-    res_D_y[0, 2] = t26
+    res_D_y[0, 2] = t24
     res_D_y[1, 0] = t16
     res_D_y[1, 1] = t8
-    res_D_y[1, 2] = t27
+    res_D_y[1, 2] = t25
     res_D_y[2, 2] = 1.0

@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from .manifolds.functions import where as where
     from .manifolds.vector import norm as norm
     from .manifolds.vector import stack as stack
+    from .trace import frames as frames
     from .trace import outputs as outputs
     from .trace import require as require
 
@@ -68,7 +69,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
         "sqrt", "tan", "where",
     ),
     ".manifolds.vector": ("norm", "stack"),
-    ".trace": ("outputs", "require"),
+    ".trace": ("frames", "outputs", "require"),
 }  # fmt: skip
 _HOME = {name: module for module, names in _NAMES.items() for name in names}
 

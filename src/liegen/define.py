@@ -13,7 +13,7 @@ import numpy as np
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value, Vector
 from liegen.manifolds.node import called, here
-from liegen.trace import Graph, Outputs, Signature, latex, signature, trace
+from liegen.trace import FrameReport, Graph, Outputs, Signature, inlined, latex, signature, trace
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -38,10 +38,13 @@ class Function(Generic[P, T]):
     doc: str
     is_factor: bool
     sampler: Sampler | None = None
+    checked: bool = True  # whether frames are
     graph: Graph = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        graph = trace(self.function, self.declared, self.name, self.doc, factor=self.is_factor)
+        graph = trace(
+            self.function, self.declared, self.name, self.doc, factor=self.is_factor, frames=self.checked
+        )
         object.__setattr__(self, "graph", graph)
 
     @cached_property
@@ -50,6 +53,11 @@ class Function(Generic[P, T]):
         from liegen.derive import derive
 
         return derive(self.graph)
+
+    @property
+    def frames(self) -> FrameReport:
+        """The frames of arguments, residual (and noise) and Jacobian columns; empty with ``frames=False``."""
+        return self.graph.frames
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> T:
         """Inline into the formula that is being traced, or evaluate on numbers.
@@ -61,7 +69,10 @@ class Function(Generic[P, T]):
         if any(v.traced for v in values.values()):
             complete = {s.name: s.bound if s.bound is not None else values[s.name] for s in self.declared}
             named = {s.name: complete[s.name] for s in self.declared if not s.positional}
-            return self.function(*(complete[s.name] for s in self.declared if s.positional), **named)
+            result: Any = self.function(*(complete[s.name] for s in self.declared if s.positional), **named)
+            given = [(s, complete[s.name]) for s in self.declared]
+            inlined(self.name, here(), given, result, frames=self.checked)
+            return result
         results = self.kernel.value.evaluate({name: v.coords for name, v in values.items()})
         typed = {name: node.manifold.holding(results[name]) for name, node in self.graph.outputs}
         single: Any = next(iter(typed.values())) if len(typed) == 1 else Outputs(typed)  # type: ignore[arg-type]
@@ -144,6 +155,7 @@ class Function(Generic[P, T]):
             doc or self.doc,
             self.is_factor,
             sample or self.sampler,
+            self.checked,
         )
 
     def _known(self, names: Any) -> None:
@@ -158,32 +170,37 @@ class Function(Generic[P, T]):
 @overload
 def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
 @overload
-def factor(*, sample: Sampler | None = None) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
-def factor(function: Any = None, /, *, sample: Sampler | None = None) -> Any:
+def factor(
+    *, sample: Sampler | None = None, frames: bool = True
+) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
+def factor(function: Any = None, /, *, sample: Sampler | None = None, frames: bool = True) -> Any:
     """Make a factor of a function that returns a residual vector.
 
     Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
-    ``sample`` draws arguments for verification.
+    ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
+    not declare frames.
     """
-    return _decorated(function, sample, is_factor=True)
+    return _decorated(function, sample, is_factor=True, frames=frames)
 
 
 @overload
 def function(function: Callable[P, S], /) -> Function[P, S]: ...
 @overload
-def function(*, sample: Sampler | None = None) -> Callable[[Callable[P, S]], Function[P, S]]: ...
-def function(function: Any = None, /, *, sample: Sampler | None = None) -> Any:
+def function(
+    *, sample: Sampler | None = None, frames: bool = True
+) -> Callable[[Callable[P, S]], Function[P, S]]: ...
+def function(function: Any = None, /, *, sample: Sampler | None = None, frames: bool = True) -> Any:
     """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``."""
-    return _decorated(function, sample, is_factor=False)
+    return _decorated(function, sample, is_factor=False, frames=frames)
 
 
-def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool) -> Callable[..., Any]:
+def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool, frames: bool) -> Callable[..., Any]:
     if function is None:
-        return partial(_decorated, sample=sample, is_factor=is_factor)
+        return partial(_decorated, sample=sample, is_factor=is_factor, frames=frames)
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
-        function, signature(function), function.__name__, doc, is_factor, sample
+        function, signature(function), function.__name__, doc, is_factor, sample, frames
     )
     return made

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from liegen.algebra.linear import Matrix
-from liegen.differentiate import ORDERS, Expressions, expressions, jacobians
+from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.kernel import Argument, Kernel, Output, PassCount
 from liegen.manifolds import ManifoldForm, Vector
 from liegen.program import Port, Program
@@ -17,17 +17,17 @@ from liegen.trace import Graph, formula, jacobian_formulas
 def derive(graph: Graph) -> Kernel:
     """Differentiate, lower and optimise.
 
-    Every order of elimination is tried; the program with the fewest operations after all passes is kept, the
-    first among equals.
+    Every strategy of elimination is tried; the program with the fewest operations after all passes is kept,
+    the first among equals.
     """
     values = expressions(graph)
     value, _ = optimise(lowered(graph, values, {}))
     candidates = [
-        (order, *optimise(lowered(graph, values, jacobians(graph, values, rule))))
-        for order, rule in ORDERS.items()
+        (name, *optimise(lowered(graph, values, jacobians(graph, values, strategy))))
+        for name, strategy in STRATEGIES.items()
     ]
-    order, best, rows = min(candidates, key=lambda c: c[1].operations)
-    passes = (PassCount(f"lower, {order} order", rows[0][1]), *(PassCount(*row) for row in rows[1:]))
+    name, best, rows = min(candidates, key=lambda c: c[1].operations)
+    passes = (PassCount(f"lower, {name} order", rows[0][1]), *(PassCount(*row) for row in rows[1:]))
     return Kernel(
         name=graph.name,
         doc=graph.doc,
@@ -40,6 +40,7 @@ def derive(graph: Graph) -> Kernel:
         value=value,
         jacobians=best,
         passes=passes,
+        frames=graph.frames.lines if graph.frames.typed else (),
     )
 
 

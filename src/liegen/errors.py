@@ -28,6 +28,10 @@ class DomainError(LiegenError):
     """A residual or Jacobian has no finite value anywhere that samples reach."""
 
 
+class UncertaintyError(LiegenError):
+    """A covariance, a square-root information matrix or a stacked Jacobian that describes no distribution."""
+
+
 class SourceError(LiegenError):
     """A file with factors cannot be found, imported, or holds no such factor."""
 

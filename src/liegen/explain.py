@@ -67,6 +67,7 @@ def explanation(function: AnyFunction) -> str:
     lines = [f"{row.name}({row.arguments}) -> {row.results}", *_indented(kernel.doc.strip().splitlines())]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Frames", function.frames.lines)
     lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.graph)])
     lines += _section("Conventions", kernel.conventions)
     lines += _section("Operations with Jacobians, after each pass", _pass_rows(kernel))
@@ -122,8 +123,10 @@ def _notes(graph: Graph) -> list[str]:
     ):
         return []
     z, x, y = (n.operation.show for n in (measured, *predicted.operands))
+    known = {name: names[-1] for name, names in graph.frames.arguments.items()}
+    own = {name: f"frame {known[name]}" if name in known else "its own frame" for name in (x, y)}
     return [
-        f"noise of covariance S in the frame of {z}: with {x} fixed, {y} has covariance S in its own frame;",
-        f"with {y} fixed, {x} has covariance Ad({z}) S Ad({z})^T in its own frame",
+        f"noise of covariance S in the frame of {z}: with {x} fixed, {y} has covariance S in {own[y]};",
+        f"with {y} fixed, {x} has covariance Ad({z}) S Ad({z})^T in {own[x]}",
         f"(exact, since {y} = {x} {z} Exp(n))",
     ]

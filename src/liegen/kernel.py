@@ -67,6 +67,7 @@ class Kernel:
     value: Program
     jacobians: Program
     passes: tuple[PassCount, ...]
+    frames: tuple[str, ...] = ()  # lines such as "T_WB: pose of B in W", where names declare frames
 
     @property
     def variables(self) -> tuple[Argument, ...]:

@@ -23,7 +23,7 @@ from liegen import (
     stack,
 )
 from liegen.derive import lowered
-from liegen.differentiate import ORDERS, expressions, jacobians
+from liegen.differentiate import STRATEGIES, expressions, jacobians
 from liegen.verify.backends import program_evaluator
 from liegen.verify.draws import batch, draw_samples
 from liegen.verify.run import library
@@ -63,7 +63,7 @@ def test_rules_agree_with_differentiation_through_the_storage(function):
     ]
     samples += [s for s in draw_samples(function, 40, 9).inside if s.case.startswith(("random", "tens"))]
     for through_storage in (False, True):
-        blocks = jacobians(graph, values, ORDERS["forward"], through_storage=through_storage)
+        blocks = jacobians(graph, values, STRATEGIES["forward"], through_storage=through_storage)
         results.append(program_evaluator(lowered(graph, values, blocks))(batch(tuple(samples))))
     by_rules, by_storage = results
     compared = 0
@@ -75,12 +75,12 @@ def test_rules_agree_with_differentiation_through_the_storage(function):
     assert compared == len(graph.outputs) * sum(p.variable for p in graph.parameters)
 
 
-@pytest.mark.parametrize("order", list(ORDERS))
+@pytest.mark.parametrize("order", list(STRATEGIES))
 def test_every_order_of_elimination_gives_the_same_jacobian(order):
     graph = all_of_se3.graph
     values, samples = expressions(graph), batch(draw_samples(all_of_se3, 10, 8).inside[:1])
     first, other = (
-        program_evaluator(lowered(graph, values, jacobians(graph, values, ORDERS[o])))(samples)
+        program_evaluator(lowered(graph, values, jacobians(graph, values, STRATEGIES[o])))(samples)
         for o in ("forward", order)
     )
     for name in first:

@@ -52,6 +52,30 @@ MISTAKES = {
         broken("*, z: SE3", "return z.log()"),
         [DECORATOR, "broken", "no variables", "before the *"],
     ),
+    "frames that do not cancel": (
+        broken("T_AB: SE3, T_CB: SE3", "return (T_AB @ T_CB).log()"),
+        [
+            BODY,
+            "broken",
+            "inner frame of T_AB is B",
+            "outer frame of T_CB is C",
+            "write T_AB @ T_CB.inverse()",
+        ],
+    ),
+    "point of another frame": (
+        broken("T_WB: SE3, p_W: R3, *, z_W: R3", "return T_WB.transform_from(p_W) - z_W"),
+        [BODY, "broken", "inner frame of T_WB is B", "frame of p_W is W", "write T_WB.transform_to(p_W)"],
+    ),
+    "frames that a manifold does not have": (
+        "from typing import Annotated\n" + broken("x: Annotated[R1, liegen.frames('W')]", "return x"),
+        ["broken", "'x'", "R1 has no frames, frames('W') names 1"],
+    ),
+    "frames that are not imported": (
+        "from __future__ import annotations\nfrom typing import Annotated\n"
+        "from liegen import SE3, factor\n\n\n"
+        "@factor\ndef broken(x: Annotated[SE3, frames('W', 'B')]):\n    return x.log()\n",
+        ["factors.py:6", "broken", "'x'", "from liegen import frames"],
+    ),
     "manifolds that do not compose": (
         broken("x: SE3, y: SO3", "return (x @ y).log()"),
         [BODY, "broken", "compose", "x (SE3)", "y (SO3)", "give it two of SE3"],

@@ -161,6 +161,11 @@ def multiply_cost(a: Matrix, b: Matrix) -> int:
     )
 
 
+def product_from_left(chain: Chain) -> Matrix:
+    """Multiply a chain out from the left."""
+    return reduce(matmul, chain)
+
+
 def product(chain: Chain) -> Matrix:
     """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
     factors = list(chain)

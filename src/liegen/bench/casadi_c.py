@@ -15,7 +15,7 @@ from liegen.algebra.casadi_backend import ca
 from liegen.algebra.linear import Matrix
 from liegen.define import Function
 from liegen.derive import lowered
-from liegen.differentiate import ORDERS, Expressions, expressions, jacobians
+from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.emit import render
 from liegen.emit.templates import lay_out
 from liegen.native import compile_shared
@@ -96,7 +96,7 @@ def _inputs(function: Function[..., object], calls: int, seed: int) -> NDArray[n
 def _variants(function: Function[..., object]) -> tuple[Variant, ...]:
     graph = function.graph
     values = expressions(graph)
-    ruled = jacobians(graph, values, ORDERS["reverse"])
+    ruled = jacobians(graph, values, STRATEGIES["reverse"])
     stored = _through_storage(function, values)
     return (
         _ours(function),

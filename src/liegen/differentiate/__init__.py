@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .eliminate import ORDERS as ORDERS
+from .eliminate import STRATEGIES as STRATEGIES
 from .graph_jacobian import Expressions as Expressions
 from .graph_jacobian import expressions as expressions
 from .graph_jacobian import jacobians as jacobians

@@ -11,7 +11,7 @@ from liegen.algebra.linear import Vector as Coordinates
 from liegen.manifolds import Leaf
 from liegen.trace import Graph, topological
 
-from .eliminate import Order, accumulate, eliminate
+from .eliminate import Strategy, accumulate, eliminate
 from .local import local_blocks, symbols
 
 
@@ -40,7 +40,7 @@ def expressions(graph: Graph) -> Expressions:
 
 
 def jacobians(
-    graph: Graph, values: Expressions, order: Order, *, through_storage: bool = False
+    graph: Graph, values: Expressions, strategy: Strategy, *, through_storage: bool = False
 ) -> dict[tuple[str, str], Matrix]:
     """Jacobian of each output by each variable, {(output, variable): matrix}."""
     variables = {id(p.node): p for p in graph.parameters if p.variable}
@@ -60,14 +60,14 @@ def jacobians(
         )
         for n, chain in zip(node.operands, blocks, strict=True):
             if chain is not None:
-                accumulate(edges, (id(n), id(node)), chain)
+                accumulate(edges, (id(n), id(node)), chain, strategy)
     # an output may feed others too: it ends at a vertex of its own
     sinks = {name: -k - 1 for k, (name, _) in enumerate(graph.outputs)}
     for name, node in graph.outputs:
         if id(node) in active:
             edges[id(node), sinks[name]] = (eye(node.manifold.form.dim),)
     inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in variables]
-    products = eliminate(edges, inner, order)
+    products = eliminate(edges, inner, strategy)
     return {
         (name, p.name): products.get((v, sinks[name])) or zeros(node.manifold.form.dim, p.manifold.form.dim)
         for name, node in graph.outputs

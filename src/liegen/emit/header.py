@@ -49,7 +49,7 @@ def doc_lines(kernel: Kernel) -> list[str]:
 
 
 def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
-    """Formula, conventions, shapes, operation counts, how to regenerate, licence."""
+    """Formula, frames, conventions, shapes, operation counts, how to regenerate, licence."""
     shapes = [f"{a.name}: {a.size}, {argument_text(a)}" for a in kernel.arguments]
     shapes += [f"{o.name}: {o.size}, {storage_text(o)}" for o in kernel.outputs]
     shapes += [f"{name}: {m} x {n}, {meaning}" for name, (m, n), meaning in jacobian_texts(kernel)]
@@ -59,6 +59,7 @@ def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     lines = [kernel.name, "", *doc_lines(kernel)]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Frames", kernel.frames)
     lines += _section("Conventions", kernel.conventions)
     lines += _section("Shapes", shapes)
     lines += _section("Outside of the domain (results NaN; in C the status has the bit)", messages)

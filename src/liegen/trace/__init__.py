@@ -3,6 +3,13 @@
 from __future__ import annotations
 
 from .formulas import formula as formula
+from .frame_check import check_frames as check_frames
+from .frame_names import Frames as Frames
+from .frame_names import frames as frames
+from .frame_names import print_name as print_name
+from .frame_names import read_name as read_name
+from .frame_report import FrameReport as FrameReport
+from .graph import Call as Call
 from .graph import Domain as Domain
 from .graph import Graph as Graph
 from .graph import Parameter as Parameter
@@ -12,6 +19,7 @@ from .latex_text import latex as latex
 from .latex_text import latex_rows as latex_rows
 from .tracer import Outputs as Outputs
 from .tracer import Signature as Signature
+from .tracer import inlined as inlined
 from .tracer import outputs as outputs
 from .tracer import require as require
 from .tracer import signature as signature

@@ -32,12 +32,12 @@ def formula(graph: Graph) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def texts_of(graph: Graph, names: Mapping[int, str], show: Show | None = None) -> dict[int, Text]:
+def texts_of(graph: Graph, names: Mapping[int, str], printed: Show | None = None) -> dict[int, Text]:
     """The text of every node by its identity, in which nodes with a name are called by it."""
     texts: dict[int, Text] = {}
     for node in graph.nodes():
         called = {id(n): Text(names[id(n)], ATOM) if id(n) in names else texts[id(n)] for n in node.operands}
-        texts[id(node)] = (show or show_as_written)(node, called)
+        texts[id(node)] = (printed or show)(node, called)
     return texts
 
 
@@ -66,7 +66,7 @@ def free_names(taken: set[str]) -> Iterator[str]:
         k += 1
 
 
-def show_as_written(node: Node, texts: Mapping[int, Text]) -> Text:
+def show(node: Node, texts: Mapping[int, Text]) -> Text:
     """The text of one node from the texts of its operands."""
     pattern = node.operation.show
     if isinstance(node.operation, Leaf):

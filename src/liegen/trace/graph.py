@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from liegen.errors import Site
 from liegen.manifolds import Manifold, Node
+
+from .frame_names import Declared
+from .frame_report import FrameReport
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +20,7 @@ class Parameter:
     manifold: type[Manifold]
     variable: bool
     node: Node
+    frames: Declared | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +29,17 @@ class Domain:
 
     condition: Node
     message: str
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """A factor or function that was called on traced values; its body is part of the graph."""
+
+    name: str
+    site: Site
+    arguments: tuple[Parameter, ...]  # declared there, with the nodes that were given
+    results: tuple[Node, ...]
+    checked: bool  # whether its frames are
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +52,8 @@ class Graph:
     parameters: tuple[Parameter, ...]
     outputs: tuple[tuple[str, Node], ...]
     domain: tuple[Domain, ...]
+    calls: tuple[Call, ...] = ()
+    frames: FrameReport = field(default_factory=FrameReport)
 
     def nodes(self) -> tuple[Node, ...]:
         """All nodes that outputs and domain need, operands first."""

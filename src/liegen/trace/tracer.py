@@ -4,20 +4,31 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from liegen.errors import DefinitionError, LiegenError, Site
 from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
 
-from .graph import Domain, Graph, Parameter, topological
+from .frame_check import check_frames
+from .frame_names import Declared, Frames, declared
+from .graph import Call, Domain, Graph, Parameter, topological
 
-_domain: ContextVar[list[Domain] | None] = ContextVar("domain", default=None)
+
+@dataclass(frozen=True)
+class _Record:
+    """What a run of a user's function states beside its result."""
+
+    domain: list[Domain]
+    calls: list[Call]
+
+
+_record: ContextVar[_Record | None] = ContextVar("record", default=None)
 
 _NAMED = ("SO2", "SE2", "SO3", "SE3", "S2", "Cal3_S2", "Cal3DS2", "Cal3Bundler")
 _KNOWN = (*(f"R{n}" for n in range(1, 10)), *_NAMED)
@@ -33,6 +44,7 @@ class Signature:
     variable: bool
     positional: bool
     bound: Value | None = None
+    frames: Declared | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +73,24 @@ def require(condition: Condition | bool, message: str) -> None:
     Outside, generated NumPy and C return NaN, C also the condition's bit, and verification draws its samples
     inside. A condition on constants that is false is an error at once.
     """
-    domain = _domain.get()
-    if isinstance(condition, Condition) and condition.traced and domain is not None:
-        domain.append(Domain(node_of(condition), message))
+    record = _record.get()
+    if isinstance(condition, Condition) and condition.traced and record is not None:
+        record.domain.append(Domain(node_of(condition), message))
     elif not bool(condition):
         raise DefinitionError(f"{here()}: requirement does not hold: {message}")
+
+
+def inlined(
+    name: str, site: Site, given: Sequence[tuple[Signature, Value]], result: Any, *, frames: bool
+) -> None:
+    """Note that a factor was called on traced values; ``frames``: whether its frames are checked."""
+    record = _record.get()
+    if record is None:
+        return
+    values = result.values.values() if isinstance(result, Outputs) else [result]
+    arguments = tuple(Parameter(s.name, s.manifold, s.variable, node_of(v), s.frames) for s, v in given)
+    results = tuple(node_of(v) for v in values if isinstance(v, Value))
+    record.calls.append(Call(name, site, arguments, results, frames))
 
 
 def signature(function: Callable[..., Any]) -> tuple[Signature, ...]:
@@ -74,30 +99,43 @@ def signature(function: Callable[..., Any]) -> tuple[Signature, ...]:
     name = function.__name__
     parameters = inspect.signature(function).parameters.values()
     try:
-        hints = get_type_hints(function)
+        hints = get_type_hints(function, include_extras=True)
     except NameError as error:
         unknown = str(error.name)
         argument = next((p.name for p in parameters if unknown in str(p.annotation)), "return")
         raise unknown_annotation(site, name, argument, unknown) from None
     except Exception as error:
         raise DefinitionError(f"{site}: {name}: an annotation cannot be read: {error}") from None
-    declared: list[Signature] = []
+    found: list[Signature] = []
     for p in parameters:
         if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD):
             stars = "*" if p.kind is p.VAR_POSITIONAL else "**"
             raise DefinitionError(f"{site}: {name}: {stars}{p.name} is not possible; name every argument")
-        declared.append(
-            Signature(p.name, _manifold(hints.get(p.name), f"{site}: {name}: argument {p.name!r}"),
-                      p.kind is not p.KEYWORD_ONLY, p.kind is not p.KEYWORD_ONLY)
+        what, positional = f"{site}: {name}: argument {p.name!r}", p.kind is not p.KEYWORD_ONLY
+        annotation, stated = _annotated(hints.get(p.name))
+        manifold = _manifold(annotation, what)
+        found.append(
+            Signature(p.name, manifold, positional, positional,
+                      frames=declared(p.name, manifold, stated, what))
         )  # fmt: skip
-    if not any(s.variable for s in declared):
+    if not any(s.variable for s in found):
         raise DefinitionError(f"{site}: {name} has no variables; put at least one argument before the *")
-    return tuple(declared)
+    return tuple(found)
+
+
+def _annotated(annotation: Any) -> tuple[Any, Frames | None]:
+    """The manifold and the frames of ``Annotated[SE3, frames("W", "B")]``."""
+    if get_origin(annotation) is not Annotated:
+        return annotation, None
+    manifold, *extras = get_args(annotation)
+    return manifold, next((e for e in extras if isinstance(e, Frames)), None)
 
 
 def unknown_annotation(site: Site, factor: str, argument: str, annotation: str) -> DefinitionError:
     """The error for a name that does not exist."""
-    cure = f"import it: from liegen import {annotation}" if annotation in _KNOWN else f"use {_MANIFOLDS}"
+    home = "typing" if annotation == "Annotated" else "liegen"
+    known = annotation in (*_KNOWN, "Annotated", "frames")
+    cure = f"import it: from {home} import {annotation}" if known else f"use {_MANIFOLDS}"
     return DefinitionError(
         f"{site}: {factor}: argument {argument!r} has the unknown annotation {annotation!r}; {cure}"
     )
@@ -120,22 +158,28 @@ def site_of(function: Callable[..., Any]) -> Site:
 
 
 def trace(
-    function: Callable[..., Any], declared: tuple[Signature, ...], name: str, doc: str, *, factor: bool
+    function: Callable[..., Any],
+    declared: tuple[Signature, ...],
+    name: str,
+    doc: str,
+    *,
+    factor: bool,
+    frames: bool = True,
 ) -> Graph:
     """Call ``function`` once on traced values.
 
     Raises DefinitionError for everything that the function does wrong: a result that is no vector, a variable
-    that no output depends on, and whatever its operations refuse.
+    that no output depends on, whatever its operations refuse, and, with ``frames``, frames that do not fit.
     """
     site = site_of(function)
     parameters = tuple(
-        Parameter(s.name, s.manifold, s.variable, parameter(s.manifold, s.name, site))
+        Parameter(s.name, s.manifold, s.variable, parameter(s.manifold, s.name, site), s.frames)
         for s in declared
         if s.bound is None
     )
     traced = {p.name: p.manifold.holding(node=p.node) for p in parameters}
     values = {s.name: s.bound if s.bound is not None else traced[s.name] for s in declared}
-    with _recording() as domain:
+    with _recording() as record:
         try:
             result = function(*(values[s.name] for s in declared if s.positional),
                               **{s.name: values[s.name] for s in declared if not s.positional})  # fmt: skip
@@ -144,9 +188,9 @@ def trace(
         except Exception as error:
             raise DefinitionError(f"{raised_at(error)}: {name}: {_explained(error)}") from None
     named = _outputs(result, f"{site}: {name}", factor=factor)
-    graph = Graph(name, doc, site, parameters, named, tuple(domain))
+    graph = Graph(name, doc, site, parameters, named, tuple(record.domain), tuple(record.calls))
     _all_used(graph)
-    return graph
+    return replace(graph, frames=check_frames(graph)) if frames else graph
 
 
 def _with_site(name: str, error: LiegenError) -> str:
@@ -165,12 +209,12 @@ def _explained(error: Exception) -> str:
 
 @contextmanager
 def _recording() -> Any:
-    domain: list[Domain] = []
-    token = _domain.set(domain)
+    record = _Record([], [])
+    token = _record.set(record)
     try:
-        yield domain
+        yield record
     finally:
-        _domain.reset(token)
+        _record.reset(token)
 
 
 def _outputs(result: Any, what: str, *, factor: bool) -> tuple[tuple[str, Node], ...]:
