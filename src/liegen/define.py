@@ -29,7 +29,8 @@ Sampler = Callable[..., Mapping[str, Value]]
 class Function(Generic[P, T]):
     """A formula on Lie groups: callable on typed values, on arrays, and inside other formulas.
 
-    ``graph`` is what was traced, ``kernel`` what was derived from it (at its first use).
+    ``graph`` is what was traced, ``kernel`` what was derived from it (at its first use). ``in_place``: in C
+    an output may be written over an argument.
     """
 
     function: Callable[..., Any]
@@ -39,6 +40,7 @@ class Function(Generic[P, T]):
     is_factor: bool
     sampler: Sampler | None = None
     checked: bool = True  # whether frames are
+    in_place: bool = False
     graph: Graph = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -52,7 +54,7 @@ class Function(Generic[P, T]):
         """The derived factor."""
         from liegen.derive import derive
 
-        return derive(self.graph)
+        return derive(self.graph, in_place=self.in_place)
 
     @property
     def frames(self) -> FrameReport:
@@ -94,12 +96,13 @@ class Function(Generic[P, T]):
 
     def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
         free = [s for s in self.declared if s.bound is None]
-        positional = [s.name for s in free if s.variable]
+        positional = [s.name for s in free if s.variable] or [s.name for s in free]
         given = dict(zip(positional, args, strict=False)) | dict(kwargs)
         missing = [s.name for s in free if s.name not in given]
         unknown = [k for k in given if k not in {s.name for s in free}]
         if missing or unknown or len(args) > len(positional) or len(given) < len(args) + len(kwargs):
-            usage = ", ".join(positional) + "".join(f", {s.name}=" for s in free if not s.variable)
+            named = [s.name for s in free if s.name not in positional]
+            usage = ", ".join([*positional, *(f"{name}=" for name in named)])
             raise DefinitionError(f"{here()}: call it as {self.name}({usage})")
         return {s.name: self._coerced(s, given[s.name]) for s in free}
 
@@ -156,6 +159,7 @@ class Function(Generic[P, T]):
             self.is_factor,
             sample or self.sampler,
             self.checked,
+            self.in_place,
         )
 
     def _known(self, names: Any) -> None:

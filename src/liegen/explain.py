@@ -30,7 +30,7 @@ class Summary:
         """``x: SE3, y: SE3, *, z: SE3``."""
         variables = [f"{k}: {v}" for k, v in self.variables.items()]
         given = [f"{k}: {v}" for k, v in self.given.items()]
-        return ", ".join([*variables, *(["*", *given] if given else [])])
+        return ", ".join([*variables, *(["*"] if variables and given else []), *given])
 
     @property
     def results(self) -> str:
@@ -70,7 +70,8 @@ def explanation(function: AnyFunction) -> str:
     lines += _section("Frames", function.frames.lines)
     lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.graph)])
     lines += _section("Conventions", kernel.conventions)
-    lines += _section("Operations with Jacobians, after each pass", _pass_rows(kernel))
+    counted = "Operations with Jacobians" if kernel.variables else "Operations"
+    lines += _section(f"{counted}, after each pass", _pass_rows(kernel))
     lines += _section("Operations by kind", _kind_rows(kernel))
     return "\n".join(lines) + "\n"
 
@@ -108,7 +109,8 @@ def _kind_rows(kernel: Kernel) -> list[str]:
     rows: list[Sequence[Any]] = [("", title, "with Jacobians")]
     rows += [(kind, alone.get(kind, 0), both.get(kind, 0)) for kind in kinds]
     rows.append(("total", kernel.value.operations, kernel.jacobians.operations))
-    return [f"{a!s:<8}  {b!s:>8}  {c!s:>14}" for a, b, c in rows]
+    lines = [(f"{a!s:<8}  {b!s:>8}", f"  {c!s:>14}") for a, b, c in rows]
+    return [first + (second if kernel.variables else "") for first, second in lines]
 
 
 def _notes(graph: Graph) -> list[str]:

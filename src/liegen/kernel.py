@@ -26,12 +26,19 @@ class Argument:
 
 @dataclass(frozen=True)
 class Output:
-    """A named result on a manifold; its Jacobians are ``dim`` rows by each variable's ``dim`` columns."""
+    """A named result on a manifold; its Jacobians are ``dim`` rows by each variable's ``dim`` columns.
+
+    ``shape`` is that of its array: (size,), or (rows, columns) for a matrix.
+    """
 
     name: str
     manifold: str
     storage: tuple[str, ...]
     dim: int
+    shape: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", self.shape or (len(self.storage),))
 
     @property
     def size(self) -> int:
@@ -53,7 +60,8 @@ class Kernel:
 
     ``value`` computes the outputs; ``jacobians`` the outputs, then for each output its Jacobian by each
     variable, as ports named ``res_D_x`` of shape (output dim, variable dim). Both read all arguments, in
-    order, as ports of shape (size,), and carry the same requirements.
+    order, as ports of shape (size,), and carry the same requirements. Without variables both are one program,
+    and its arguments are positional. ``in_place``: the array of an output may be that of an argument.
     """
 
     name: str
@@ -68,6 +76,7 @@ class Kernel:
     jacobians: Program
     passes: tuple[PassCount, ...]
     frames: tuple[str, ...] = ()  # lines such as "T_WB: pose of B in W", where names declare frames
+    in_place: bool = False
 
     @property
     def variables(self) -> tuple[Argument, ...]:
@@ -78,6 +87,16 @@ class Kernel:
     def given(self) -> tuple[Argument, ...]:
         """The arguments that get none."""
         return tuple(a for a in self.arguments if not a.variable)
+
+    @property
+    def positional(self) -> tuple[Argument, ...]:
+        """The arguments without a name in a call: the variables, or all where there are none."""
+        return self.variables or self.arguments
+
+    @property
+    def keywords(self) -> tuple[Argument, ...]:
+        """The arguments that a call names."""
+        return self.given if self.variables else ()
 
     def jacobian_name(self, output: Output, variable: Argument) -> str:
         """``res_D_x``."""

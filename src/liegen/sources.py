@@ -16,21 +16,27 @@ from typing import Any
 
 from liegen.define import Function
 from liegen.errors import DefinitionError, LiegenError, Site, SourceError
+from liegen.modules import group_functions, group_named
 from liegen.trace import unknown_annotation
 
 AnyFunction = Function[..., Any]
 LIBRARY = "liegen.library"
 
 
-def load(source: str | None) -> tuple[AnyFunction, ...]:
+def load(source: str | None, groups: Iterable[str] = ()) -> tuple[AnyFunction, ...]:
     """The factors and functions of a source, in the order of their definition.
 
     ``None`` is the library, a path that ends in ``.py`` a file (its folder is put on ``sys.path``, so that it
     may import its neighbours), anything else a dotted module. What a source imports with an ``import``
     statement is not its own and does not count; a package's imports from its own modules do. A result of
-    ``vary``, ``fix`` or ``bind`` counts where it gets its name. Raises SourceError for a source that cannot
-    be imported or has no factor, DefinitionError for a factor that liegen refuses and for two with one name.
+    ``vary``, ``fix`` or ``bind`` counts where it gets its name. With names of ``groups`` there is no source:
+    these are the functions of their modules. Raises SourceError for a source that cannot be imported or has
+    no factor and for an unknown group, DefinitionError for a factor that liegen refuses and for two with one
+    name.
     """
+    names = tuple(dict.fromkeys(groups))
+    if names:
+        return _of_groups(source, names)
     name = source if source is not None else LIBRARY
     module = _import_file(Path(name)) if _is_file(name) else _import_module(name)
     tree = _tree(module)
@@ -46,9 +52,15 @@ def load(source: str | None) -> tuple[AnyFunction, ...]:
     return tuple({id(f): f for f in functions.values()}.values())
 
 
-def by_name(source: str | None) -> dict[str, AnyFunction]:
+def _of_groups(source: str | None, names: Sequence[str]) -> tuple[AnyFunction, ...]:
+    if source is not None:
+        raise SourceError(f"give either the source {source} or --group {names[0]}, not both")
+    return tuple(f for name in names for f in group_functions(group_named(name)))
+
+
+def by_name(source: str | None, groups: Sequence[str] = ()) -> dict[str, AnyFunction]:
     """The same by name; other processes load a source again with it."""
-    return {f.name: f for f in load(source)}
+    return {f.name: f for f in load(source, groups)}
 
 
 def select(functions: Sequence[AnyFunction], names: Iterable[str]) -> tuple[AnyFunction, ...]:

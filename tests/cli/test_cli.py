@@ -268,7 +268,7 @@ def test_verify_fails_with_code_1(source, monkeypatch):
 
     from liegen import sources
 
-    def wrong(name):
+    def wrong(name, groups):
         (function,) = sources.select(load(name), ["first_entries"])
         program = function.kernel.jacobians
         k = next(i for i, port in enumerate(program.outputs) if port.name == "res_D_x")

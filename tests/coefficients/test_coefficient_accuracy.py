@@ -20,7 +20,7 @@ def squares(low, high, count):
 
 RANGES = {"[0, 2 pi]": squares(0, 2 * np.pi, 1500), "[2 pi, 60]": uniform(2 * np.pi, 60, 400) ** 2}
 #: c_0 to c_5: largest error in ulp, less what half an ulp in theta makes of the function.
-#: Over 4 million angles the worst were 0.5, 2.3, 3.3, 2.7, 3.6 and 3.7.
+#: Over 10 million angles the worst were 0.5, 2.3, 3.4, 2.7, 3.6 and 3.8.
 STUMPFF_BOUNDS = {1: (1, 2), 3: (1, 3, 4, 3), 5: (1, 3, 4, 3, 4, 4)}
 
 
@@ -36,16 +36,6 @@ def test_stumpff(upto, interval):
         worst = np.max((ref.error(values, exact) - conditioning) / ref.ulp(exact))
         print(f"c{k} of {upto} on {interval}: {worst:.2f} ulp and conditioning")
         assert worst <= bound
-
-
-@pytest.mark.parametrize("upto", [3, 5])
-def test_stumpff_without_zeros_needs_no_allowance_for_conditioning(upto):
-    s = RANGES["[0, 2 pi]"]
-    for k in range(3, upto + 1):
-        exact = [ref.c(k, x) for x in s]
-        worst = np.max(ref.error(stumpff(s, upto)[k], exact) / ref.ulp(exact))
-        print(f"c{k} of {upto} on [0, 2 pi]: {worst:.2f} ulp")
-        assert worst <= 4
 
 
 def test_log_factor():

@@ -29,6 +29,7 @@ from liegen.manifolds.functions import (
     where,
 )
 from liegen.manifolds.vector import norm, stack
+from liegen.modules import group_functions
 from liegen.trace import outputs
 from liegen.verify import reference
 
@@ -108,9 +109,11 @@ def in_doubles(graph: Any, sample: Any) -> dict[str, Any]:
     return {name: tuple(float(x) for x in values[id(node)]) for name, node in graph.outputs}
 
 
-@pytest.mark.parametrize(
-    "language", [groups_language, vectors_language, cameras_language], ids=lambda f: f.name
-)
+MATRICES = [f for group in (SE2, SE3) for f in group_functions(group) if not f.kernel.variables]
+LANGUAGES = [groups_language, vectors_language, cameras_language, *MATRICES]
+
+
+@pytest.mark.parametrize("language", LANGUAGES, ids=lambda f: f.name)
 def test_every_operation_agrees_with_the_closed_forms_on_doubles(language: Any) -> None:
     g = np.random.default_rng(11)
     size = {"SE3": 4, "SE2": 2, "S2": 3}
@@ -127,11 +130,7 @@ def test_every_operation_agrees_with_the_closed_forms_on_doubles(language: Any) 
 
 
 def test_the_languages_above_cover_every_operation() -> None:
-    used = {
-        n.operation.name
-        for f in (groups_language, vectors_language, cameras_language)
-        for n in f.graph.nodes()
-    }
+    used = {n.operation.name for f in LANGUAGES for n in f.graph.nodes()}
     from liegen.verify.reference.interpreter import OPERATIONS
 
     assert set(OPERATIONS) - used == set()

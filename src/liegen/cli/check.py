@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,40 +27,39 @@ SHOWN = 20
 def check(directory: str, source: str | None) -> None:
     """Compare a generated tree with what would be written now. DIR is 'generated' by default.
 
-    Repeats the command that the tree's manifest states. Give SOURCE where the manifest's file is not in the
-    current folder, or beside DIR.
+    Repeats the command that the tree's manifest states, and those of the trees right below it. Give SOURCE
+    where the manifest's file is not in the current folder, or beside DIR.
     """
     from liegen.emit import check_tree
 
-    folder = Path(directory)
     clean = True
-    for manifest in _manifests(folder):
+    for folder, manifest in _manifests(Path(directory)):
         stated = str(manifest["options"]["regenerate"])
         request = _request(stated, folder, source)
-        files = rendered(request, chosen(request.source, request.names), stated)
+        files = rendered(request, chosen(request.source, request.names, request.groups), stated)
         report = check_tree(files, folder)
         for line in _lines(report, folder, len(files)):
             click.echo(line)
         if not report.ok:
             clean = False
-            click.echo(f"mend it with: {request.command(request.source, directory)}")
+            click.echo(f"mend it with: {request.command(request.source, str(folder))}")
     if not clean:
         raise click.exceptions.Exit(1)
 
 
-def _manifests(folder: Path) -> list[dict[str, Any]]:
-    """Every manifest in the folder. Raises OutputError where there is none."""
+def _manifests(folder: Path) -> list[tuple[Path, dict[str, Any]]]:
+    """Every manifest in the folder and right below it, with its folder. Raises OutputError without any."""
     from liegen.emit.rendering import FORMAT
     from liegen.errors import OutputError
 
-    found: list[dict[str, Any]] = []
-    for path in sorted(folder.glob("*.json")):
+    found: list[tuple[Path, dict[str, Any]]] = []
+    for path in [*sorted(folder.glob("*.json")), *sorted(folder.glob("*/*.json"))]:
         try:
             content: Any = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
         if isinstance(content, dict) and content.get("format") == FORMAT:  # pyright: ignore[reportUnknownMemberType]
-            found.append(content)  # pyright: ignore[reportUnknownArgumentType]
+            found.append((path.parent, content))  # pyright: ignore[reportUnknownArgumentType]
     if not found:
         raise OutputError(
             f"{folder} holds no manifest that liegen wrote; "
@@ -84,8 +84,8 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    request = requested(original, given["names"], given["targets"], given["package"], given["layout"])
-    return Request(place, request.names, request.targets, request.package, request.layout)
+    values = (given[key] for key in ("names", "targets", "package", "layout", "groups"))
+    return replace(requested(original, *values), source=place)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:

@@ -6,17 +6,18 @@ import json
 
 import click
 
-from .shared import chosen, source_argument, table
+from .shared import chosen, groups_option, source_argument, table
 
 
 @click.command("list")
 @source_argument
+@groups_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def list_factors(source: str | None, as_json: bool) -> None:
-    """List the factors of SOURCE: signature, residual dimension, meaning."""
+def list_factors(source: str | None, groups: tuple[str, ...], as_json: bool) -> None:
+    """List the factors of SOURCE (or the functions of groups): signature, residual dimension, meaning."""
     from liegen.explain import summary
 
-    rows = [summary(f) for f in chosen(source, ())]
+    rows = [summary(f) for f in chosen(source, (), groups)]
     if as_json:
         click.echo(json.dumps([row.as_json() for row in rows], indent=2, ensure_ascii=False))
         return
@@ -29,10 +30,11 @@ def list_factors(source: str | None, as_json: bool) -> None:
 @click.command()
 @click.argument("name")
 @source_argument
+@groups_option
 @click.option("--latex", "as_latex", is_flag=True, help="Print the residual and its Jacobians in LaTeX.")
-def explain(name: str, source: str | None, as_latex: bool) -> None:
+def explain(name: str, source: str | None, groups: tuple[str, ...], as_latex: bool) -> None:
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
     from liegen.explain import explanation, latex_explanation
 
-    (function,) = chosen(source, [name])
+    (function,) = chosen(source, [name], groups)
     click.echo((latex_explanation if as_latex else explanation)(function), nl=False)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, names_option, source_argument, table, tracked
+from .shared import chosen, groups_option, names_option, source_argument, table, tracked
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -34,14 +34,16 @@ class Request:
     targets: tuple[str, ...]
     package: str
     layout: str
+    groups: tuple[str, ...] = ()
 
     def command(self, source: str | None, directory: str) -> str:
         """The command line that repeats the request; options with their default value are left out."""
         words = ["liegen", "generate", *([source] if source else [])]
+        words += [w for group in self.groups for w in ("--group", group)]
         words += [w for name in self.names for w in ("-f", name)]
         words += [] if self.targets == TARGETS else [w for target in self.targets for w in ("-t", target)]
         words += ["-o", directory]
-        words += [] if self.package == default_package(source) else ["--package", self.package]
+        words += [] if self.package == default_package(source, self.groups) else ["--package", self.package]
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
         return shlex.join(words)
 
@@ -52,21 +54,28 @@ class Request:
         return self.command(Path(str(self.source)).name if is_file else self.source, ANYWHERE)
 
 
-def default_package(source: str | None) -> str:
-    """``liegen_factors`` for the library, ``robot_gen`` for ``robot.py`` and for ``my.robot``."""
+def default_package(source: str | None, groups: Sequence[str] = ()) -> str:
+    """``liegen_factors`` for the library, ``liegen_groups`` for groups, ``robot_gen`` for ``robot.py``."""
     if source is None:
-        return "liegen_factors"
+        return "liegen_groups" if groups else "liegen_factors"
     stem = Path(source).stem if source.endswith(".py") else source.rpartition(".")[2]
     name = re.sub(r"[^A-Za-z0-9_]+", "_", stem).strip("_")
     return f"{name}_gen"
 
 
 def requested(
-    source: str | None, names: Sequence[str], targets: Sequence[str], package: str | None, layout: str
+    source: str | None,
+    names: Sequence[str],
+    targets: Sequence[str],
+    package: str | None,
+    layout: str,
+    groups: Sequence[str] = (),
 ) -> Request:
     """Fill in the defaults."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
-    return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout)
+    called = package or default_package(source, groups)
+    unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
+    return Request(source, unique[0], wanted, called, layout, unique[1])
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -92,16 +101,23 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
     )
 
 
+def _row(kernel: Kernel) -> tuple[str, str, str]:
+    """Name and operations; a function without Jacobians has one number."""
+    both = str(kernel.jacobians.operations) if kernel.variables else ""
+    return kernel.name, str(kernel.value.operations), both
+
+
 @click.command()
 @source_argument
 @names_option
+@groups_option
 @click.option(
     "-t", "--target", "targets", multiple=True, type=click.Choice(TARGETS), help="Language; both by default."
 )
 @click.option("-o", "--output", required=True, metavar="DIR", help="Folder to write to; made if need be.")
 @click.option(
     "--package", metavar="NAME", help="Name of the Python package and prefix of the C functions."
-    " Default: liegen_factors for the library, STEM_gen for a file STEM.py."
+    " Default: liegen_factors for the library, liegen_groups for groups, STEM_gen for a file STEM.py."
 )  # fmt: skip
 @click.option(
     "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
@@ -110,6 +126,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
 def generate(
     source: str | None,
     names: tuple[str, ...],
+    groups: tuple[str, ...],
     targets: tuple[str, ...],
     output: str,
     package: str | None,
@@ -118,8 +135,8 @@ def generate(
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout)
-    functions = chosen(source, request.names)
+    request = requested(source, names, targets, package, layout, groups)
+    functions = chosen(source, request.names, groups)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]
@@ -130,7 +147,7 @@ def generate(
     done = write_tree(files, Path(output))
     table(
         ("factor", "operations", "with Jacobians"),
-        [(f.name, f"{f.kernel.value.operations}", f"{f.kernel.jacobians.operations}") for f in functions],
+        [_row(f.kernel) for f in functions],
         right=(1, 2),
     )
     click.echo()

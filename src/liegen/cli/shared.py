@@ -19,11 +19,17 @@ names_option = click.option(
 )
 
 
-def chosen(source: str | None, names: Sequence[str]) -> tuple[AnyFunction, ...]:
-    """The factors that a command is about."""
+groups_option = click.option(
+    "--group", "groups", multiple=True, metavar="GROUP",
+    help="The functions of this Lie group (SE3, ...) instead of factors; may be repeated.",
+)  # fmt: skip
+
+
+def chosen(source: str | None, names: Sequence[str], groups: Sequence[str] = ()) -> tuple[AnyFunction, ...]:
+    """The factors, or the functions of groups, that a command is about."""
     from liegen.sources import load, select
 
-    return select(load(source), names)
+    return select(load(source, groups), names)
 
 
 def count(n: int, noun: str) -> str:

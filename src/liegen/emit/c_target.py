@@ -33,6 +33,7 @@ SYNTAX = Syntax(
 )  # fmt: skip
 
 _TYPES = {"scalar": "double", "condition": "int"}
+_STATUS = "The result is 0, or the bits of the requirements that do not hold."
 #: Requirements that a non-negative ``int`` has bits for.
 _BITS = 31
 
@@ -65,7 +66,12 @@ class Function:
 
 
 def value_name(kernel: Kernel) -> str:
-    """``between_se3_res``; ``..._value`` for a function whose outputs are named otherwise."""
+    """``between_se3_res``; ``..._value`` for a function whose outputs are named otherwise.
+
+    Without Jacobians there is one function, named like the kernel.
+    """
+    if not kernel.variables:
+        return kernel.name
     return f"{kernel.name}_res" if [o.name for o in kernel.outputs] == ["res"] else f"{kernel.name}_value"
 
 
@@ -93,7 +99,7 @@ def _function(
 ) -> Function:
     listing = print_program(program, SYNTAX, scalar_names(kernel))
     prefix = f"{options.package}_"
-    restrict = f"{options.package.upper()}_RESTRICT"
+    pointer = "*" if kernel.in_place else f"*{options.package.upper()}_RESTRICT "
     values = {o.name for o in kernel.outputs}
     jacobians = tuple(port.name for port in program.outputs if port.name not in values)
     passed = [*(a.name for a in kernel.arguments), *(o.name for o in kernel.outputs)]
@@ -101,10 +107,10 @@ def _function(
     read = {load.port for load in listing.loads}
     return Function(
         name=f"{prefix}{suffix}",
-        summary=f"Value and Jacobians ({order}); any Jacobian may be NULL." if jacobians else "Value only.",
+        summary=_summary(kernel, program, order),
         parameters=(
-            *(f"const double *{restrict} {a.name}" for a in kernel.arguments),
-            *(f"double *{restrict} {port.name}" for port in program.outputs),
+            *(f"const double {pointer}{a.name}" for a in kernel.arguments),
+            *(f"double {pointer}{port.name}" for port in program.outputs),
         ),
         fallback=f"{prefix}{value_name(kernel)}({', '.join(passed)})",
         unused=tuple(a.name for a in kernel.arguments if a.name not in read),
@@ -120,6 +126,19 @@ def _function(
     )
 
 
+def _summary(kernel: Kernel, program: Program, order: str) -> str:
+    if not kernel.variables:
+        return f"Value ({order})."
+    jacobians = len(program.outputs) > len(kernel.outputs)
+    return f"Value and Jacobians ({order}); any Jacobian may be NULL." if jacobians else "Value only."
+
+
+def _overlap(kernel: Kernel) -> tuple[str, ...]:
+    if kernel.in_place:
+        return "An output may be the array of an argument; outputs must not overlap each other.", _STATUS
+    return (f"Arrays must not overlap. {_STATUS}",)
+
+
 def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
     """The names that the templates lay out."""
     if len(kernel.value.requirements) > _BITS:
@@ -128,22 +147,22 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
             f"of the C function has {_BITS} bits; join some conditions"
         )
     value, name = value_name(kernel), kernel.name
-    functions = [
-        _function(kernel, kernel.value, options, value, False),
-        _function(kernel, kernel.jacobians, options, name, False),
-    ]
+    functions = [_function(kernel, kernel.value, options, value, False)]
+    if kernel.variables:
+        functions.append(_function(kernel, kernel.jacobians, options, name, False))
     if options.layout == "col":
         functions.append(_function(kernel, kernel.jacobians, options, f"{name}_cm", True))
     shapes = [f"{a.name}[{a.size}]: {argument_text(a)}" for a in kernel.arguments]
-    shapes += [f"{o.name}[{o.size}]: {storage_text(o)}" for o in kernel.outputs]
+    shapes += [f"{o.name}[{' * '.join(map(str, o.shape))}]: {storage_text(o)}" for o in kernel.outputs]
     shapes += [f"{j}[{m} * {n}]: {m} x {n}, {meaning}" for j, (m, n), meaning in jacobian_texts(kernel)]
     return {
         "header": kernel_header(kernel, options),
         "factor": name,
         "guard_macro": f"{options.package}_{name}_H".upper(),
         "restrict": f"{options.package.upper()}_RESTRICT",
+        "restricted": not kernel.in_place,
         "functions": tuple(functions),
-        "shapes": tuple(shapes),
+        "shapes": (*_overlap(kernel), *shapes),
         "checked": bool(kernel.value.requirements),
         "fill": f"{options.package}_{name}_fill",
     }

@@ -19,7 +19,9 @@ LICENCE = (
 
 
 def storage_text(item: Argument | Output) -> str:
-    """``SE3 (qx, qy, qz, qw, x, y, z)``; the manifold alone where it stores one number."""
+    """``SE3 (qx, qy, qz, qw, x, y, z)``; the manifold alone where it stores one number, or is of matrices."""
+    if isinstance(item, Output) and len(item.shape) > 1:
+        return item.manifold
     return f"{item.manifold} ({', '.join(item.storage)})" if item.size > 1 else item.manifold
 
 
@@ -38,6 +40,11 @@ def jacobian_texts(kernel: Kernel) -> tuple[tuple[str, tuple[int, int], str], ..
     )
 
 
+def content(kernels: Sequence[Kernel]) -> str:
+    """What a package holds, in plural."""
+    return "functions" if all(k.in_place for k in kernels) else "factors"
+
+
 def closing(options: Options) -> tuple[str, ...]:
     """How to regenerate, and the licence."""
     return (f"Regenerate: {options.regenerate}", "", *LICENCE)
@@ -51,11 +58,11 @@ def doc_lines(kernel: Kernel) -> list[str]:
 def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     """Formula, frames, conventions, shapes, operation counts, how to regenerate, licence."""
     shapes = [f"{a.name}: {a.size}, {argument_text(a)}" for a in kernel.arguments]
-    shapes += [f"{o.name}: {o.size}, {storage_text(o)}" for o in kernel.outputs]
+    shapes += [
+        f"{o.name}: {f'{o.size}, ' if len(o.shape) == 1 else ''}{storage_text(o)}" for o in kernel.outputs
+    ]
     shapes += [f"{name}: {m} x {n}, {meaning}" for name, (m, n), meaning in jacobian_texts(kernel)]
     messages = [f"bit {k}: {r.message}" for k, r in enumerate(kernel.value.requirements)]
-    alone = "residual" if [o.name for o in kernel.outputs] == ["res"] else "outputs"
-    counts = f"{kernel.value.operations} ({alone} only), {kernel.jacobians.operations} (with Jacobians)"
     lines = [kernel.name, "", *doc_lines(kernel)]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
@@ -63,16 +70,27 @@ def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     lines += _section("Conventions", kernel.conventions)
     lines += _section("Shapes", shapes)
     lines += _section("Outside of the domain (results NaN; in C the status has the bit)", messages)
-    return tuple(line.rstrip() for line in [*lines, "", f"Operations: {counts}", *closing(options)])
+    return tuple(line.rstrip() for line in [*lines, "", f"Operations: {_counts(kernel)}", *closing(options)])
+
+
+def _counts(kernel: Kernel) -> str:
+    if not kernel.variables:
+        return str(kernel.value.operations)
+    alone = "residual" if [o.name for o in kernel.outputs] == ["res"] else "outputs"
+    return f"{kernel.value.operations} ({alone} only), {kernel.jacobians.operations} (with Jacobians)"
 
 
 def package_header(kernels: Sequence[Kernel], options: Options) -> tuple[str, ...]:
     """For files that belong to the whole package: what each factor is, how to regenerate, licence."""
-    lines = [f"{options.package}: factors and their Jacobians"]
+    lines = [f"{options.package}: {content(kernels)} and their Jacobians"]
     lines += _section("Formulas", [f"{k.name}: {'; '.join(k.formula)}" for k in kernels])
     lines += _section("Conventions", list(dict.fromkeys(line for k in kernels for line in k.conventions)))
-    lines += ["", "Shapes and units: at the top of each factor's file."]
-    counts = [f"{k.name}: {k.value.operations}, with Jacobians {k.jacobians.operations}" for k in kernels]
+    lines += ["", f"Shapes and units: at the top of each {content(kernels)[:-1]}'s file."]
+    counts = [
+        f"{k.name}: {k.value.operations}"
+        + (f", with Jacobians {k.jacobians.operations}" if k.variables else "")
+        for k in kernels
+    ]
     lines += _section("Operations", counts)
     return tuple(line.rstrip() for line in [*lines, "", *closing(options)])
 

@@ -69,7 +69,8 @@ def public_names(kernel: Kernel) -> tuple[str, ...]:
     """What the module of a kernel exports."""
     record = camel(kernel.name)
     several = (f"{record}Outputs",) if len(kernel.outputs) > 1 else ()
-    return (f"{record}Jacobians", *several, kernel.name, f"{kernel.name}_jacobians")
+    jacobians = (f"{record}Jacobians", f"{kernel.name}_jacobians") if kernel.variables else ()
+    return (*jacobians, *several, kernel.name)
 
 
 def _loads(listing: Listing, arguments: Sequence[Argument]) -> tuple[str, ...]:
@@ -89,10 +90,11 @@ def _function(name: str, kernel: Kernel, program: Program) -> Function:
     outputs = tuple(port.name for port in program.outputs)
     # Outputs arrive filled with zeros.
     stores = [s for group in listing.stores for s in group if s.text != SYNTAX.constant(0.0)]
+    loads = _loads(listing, kernel.arguments)
     return Function(
         signature=_broken(f"def {name}(", [f"{n}: Array" for n in (*arguments, *outputs)], ") -> None:"),
         outputs=outputs,
-        loads=_loads(listing, kernel.arguments),
+        loads=loads if loads or stores or listing.conditions else ("pass",),
         statements=tuple(f"{a.name} = {a.text}" for a in (*listing.guard, *listing.body)),
         stores=tuple(f"{s.port}[{', '.join(map(str, s.index))}] = {s.text}" for s in stores),
         invalid=" | ".join(f"~({c})" for c in listing.conditions),
@@ -128,9 +130,9 @@ def _interface(
 ) -> Interface:
     meanings = {o.name: storage_text(o) for o in kernel.outputs}
     meanings |= {name: meaning for name, _, meaning in jacobian_texts(kernel)}
-    typed = [f"{a.name}: npt.ArrayLike" for a in kernel.variables]
-    typed += ["*"] if kernel.given else []
-    typed += [f"{a.name}: npt.ArrayLike" for a in kernel.given]
+    typed = [f"{a.name}: npt.ArrayLike" for a in kernel.positional]
+    typed += ["*"] if kernel.keywords else []
+    typed += [f"{a.name}: npt.ArrayLike" for a in kernel.keywords]
     shapes = _broken("    shapes = (", [repr(port.shape) for port in program.outputs], ")", comma=True)
     call = f'evaluate({private}, "{name}", values, shapes)'
     return Interface(
@@ -150,21 +152,22 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
     record, alone = camel(kernel.name), f"{camel(kernel.name)}Outputs" if several else ""
     jacobians = f"{kernel.name}_jacobians"
     tail = "\nWith the Jacobians by the tangent of every variable."
-    functions = (
-        _function("_value", kernel, kernel.value),
-        _function("_jacobians", kernel, kernel.jacobians),
-    )
+    functions = [_function("_value", kernel, kernel.value)]
+    interfaces = [_interface(kernel, kernel.value, kernel.name, "_value", alone, "")]
+    if kernel.variables:
+        functions.append(_function("_jacobians", kernel, kernel.jacobians))
+        interfaces.append(
+            _interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians", tail)
+        )
     lines = [line for f in functions for line in (*f.statements, *f.stores)]
     return {
         "header": kernel_header(kernel, options),
         "factor": kernel.name,
+        "differentiated": bool(kernel.variables),
         "uses_numpy": any("np." in line for line in lines) or any(f.invalid for f in functions),
         "exports": sorted(public_names(kernel)),
-        "functions": functions,
-        "interfaces": (
-            _interface(kernel, kernel.value, kernel.name, "_value", alone, ""),
-            _interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians", tail),
-        ),
+        "functions": tuple(functions),
+        "interfaces": tuple(interfaces),
     }
 
 

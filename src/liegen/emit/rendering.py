@@ -11,7 +11,7 @@ from liegen.errors import OutputError
 from liegen.kernel import Kernel
 from liegen.program import Program
 
-from .header import package_header
+from .header import content, package_header
 from .names import check_names
 from .target import Options, Target
 from .targets import TARGETS
@@ -67,6 +67,7 @@ def _render_target(target: Target, kernels: Sequence[Kernel], options: Options) 
     shared = {
         "package": options.package,
         "header": package_header(kernels, options),
+        "content": content(kernels).capitalize(),
         "guard_macro": f"{options.package}_H".upper(),
         "factors": printed,
     }
@@ -96,9 +97,21 @@ def _manifest(
 def _facts(kernel: Kernel) -> dict[str, Any]:
     return {
         "value": _counts(kernel.value),
-        "jacobians": _counts(kernel.jacobians),
+        **({"jacobians": _jacobian_counts(kernel)} if kernel.variables else {}),
         "requirements": [r.message for r in kernel.value.requirements],
     }
+
+
+def _jacobian_counts(kernel: Kernel) -> dict[str, Any]:
+    """With the operations that each Jacobian alone adds to those of the outputs."""
+    program, outputs = kernel.jacobians, [o.name for o in kernel.outputs]
+    alone = program.operations_of(outputs)
+    added = {
+        port.name: program.operations_of([*outputs, port.name]) - alone
+        for port in program.outputs
+        if port.name not in outputs
+    }
+    return {**_counts(program), "operations_added_by": added}
 
 
 def _counts(program: Program) -> dict[str, Any]:

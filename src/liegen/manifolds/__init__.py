@@ -14,6 +14,8 @@ from .groups import SE2 as SE2
 from .groups import SE3 as SE3
 from .groups import SO2 as SO2
 from .groups import SO3 as SO3
+from .matrix import MatrixValue as MatrixValue
+from .matrix import matrix_class as matrix_class
 from .node import Leaf as Leaf
 from .node import Node as Node
 from .node import Operation as Operation

@@ -44,6 +44,11 @@ class ManifoldForm(ABC):
         """Number of stored scalars."""
         return len(self.storage)
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the array that holds an element."""
+        return (self.size,)
+
     @abstractmethod
     def retract(self, x: Coords, d: Coords) -> Vector:
         """The point that the tangent vector ``d`` at ``x`` leads to."""
@@ -177,6 +182,11 @@ class PoseForm(GroupForm):
 
     rotation: RotationForm
     rotation_first: bool
+
+    @property
+    def space(self) -> int:
+        """Dimension of the vectors that it moves."""
+        return self.rotation.space
 
     def join(self, rotation: Coords, translation: Coords) -> Vector:
         """Coordinates from both parts."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -157,6 +157,19 @@ class Program:
     def operations(self) -> int:
         """Number of arithmetic instructions: selects, negations, comparisons and calls included."""
         return sum(self.op_counts().values())
+
+    def operations_of(self, names: Collection[str]) -> int:
+        """Number of arithmetic instructions that the outputs with these names need."""
+        needed = {
+            i
+            for p, indices in zip(self.outputs, self.results, strict=True)
+            if p.name in names
+            for i in indices
+        }
+        for k in range(len(self.code) - 1, -1, -1):
+            if k in needed:
+                needed.update(self.code[k].args)
+        return sum(self.code[k].op not in FREE for k in needed)
 
     def digest(self) -> str:
         """SHA-256 of the program's text, equal on every machine."""

@@ -69,12 +69,12 @@ def backends(kernel: Kernel, place: Workspace) -> tuple[Backend, ...]:
     )
 
 
-def programs(kernel: Kernel) -> tuple[Backend, Backend]:
-    """Both programs of a kernel, the complete one first."""
-    return (
-        Backend("program", True, program_evaluator(kernel.jacobians)),
-        Backend("program, value", False, program_evaluator(kernel.value)),
-    )
+def programs(kernel: Kernel) -> tuple[Backend, ...]:
+    """Both programs of a kernel, the complete one first; one where there are no variables."""
+    value = Backend("program, value", False, program_evaluator(kernel.value))
+    if not kernel.variables:
+        return (value,)
+    return Backend("program", True, program_evaluator(kernel.jacobians)), value
 
 
 def program_evaluator(program: Program) -> Evaluate:
@@ -93,10 +93,10 @@ def program_evaluator(program: Program) -> Evaluate:
     return evaluate
 
 
-def numpy_backends(kernel: Kernel, folder: Path) -> tuple[Backend, Backend]:
-    """Both functions of the generated package, imported from ``folder``."""
+def numpy_backends(kernel: Kernel, folder: Path) -> tuple[Backend, ...]:
+    """The functions of the generated package, imported from ``folder``."""
     package = load_package(folder / PACKAGE)
-    value, jacobians = getattr(package, kernel.name), getattr(package, f"{kernel.name}_jacobians")
+    value, jacobians = getattr(package, kernel.name), getattr(package, f"{kernel.name}_jacobians", None)
     names = [o.name for o in kernel.outputs]
 
     def outputs(arguments: Arrays) -> dict[str, Array]:
@@ -106,12 +106,13 @@ def numpy_backends(kernel: Kernel, folder: Path) -> tuple[Backend, Backend]:
     def everything(arguments: Arrays) -> dict[str, Array]:
         return _called(jacobians, kernel, arguments)._asdict()
 
-    return Backend("NumPy, value", False, outputs), Backend("NumPy", True, everything)
+    alone = Backend("NumPy, value", False, outputs)
+    return (alone, Backend("NumPy", True, everything)) if kernel.variables else (alone,)
 
 
 def _called(function: Any, kernel: Kernel, arguments: Arrays) -> Any:
-    variables = [arguments[a.name] for a in kernel.variables]
-    return function(*variables, **{a.name: arguments[a.name] for a in kernel.given})
+    positional = [arguments[a.name] for a in kernel.positional]
+    return function(*positional, **{a.name: arguments[a.name] for a in kernel.keywords})
 
 
 def load_package(folder: Path) -> Any:

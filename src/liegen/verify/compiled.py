@@ -47,12 +47,12 @@ def compile_c(sources: Path, folder: Path) -> tuple[Path | None, str]:
 
 
 def c_backends(kernel: Kernel, library: Path, package: str) -> tuple[tuple[str, bool, Evaluate], ...]:
-    """(name, with Jacobians, evaluate) of both functions."""
+    """(name, with Jacobians, evaluate) of its functions."""
     shared = ctypes.CDLL(str(library))
-    return (
-        ("C, value", False, _evaluator(shared[f"{package}_{value_name(kernel)}"], kernel, kernel.value)),
-        ("C", True, _evaluator(shared[f"{package}_{kernel.name}"], kernel, kernel.jacobians)),
-    )
+    value = "C, value", False, _evaluator(shared[f"{package}_{value_name(kernel)}"], kernel, kernel.value)
+    if not kernel.variables:
+        return (value,)
+    return value, ("C", True, _evaluator(shared[f"{package}_{kernel.name}"], kernel, kernel.jacobians))
 
 
 def _evaluator(function: ctypes._NamedFuncPointer, kernel: Kernel, program: Program) -> Evaluate:  # pyright: ignore[reportPrivateUsage]

@@ -1,9 +1,10 @@
 """What the reference says at every sample, as arrays, and how far from it a computed result may be.
 
-Error bound: 2e-14 max(1, s), with s the largest absolute entry of the reference's Jacobian, or of the inputs
-for an output. Beyond a quarter turn on S2 it is divided by the sine of the angle: rounding of the stored unit
-vectors does that to any method. Samples that are ill-conditioned by their nature, and factors of users, which
-may be so anywhere, are moreover allowed the error that rounding makes in their program.
+Error bound: 2e-14 max(1, s), with s the largest absolute entry of the reference's Jacobian or matrix, or of
+the inputs for any other output. Beyond a quarter turn on S2 it is divided by the sine of the angle: rounding
+of the stored unit vectors does that to any method. Samples that are ill-conditioned by their nature, and
+factors of users, which may be so anywhere, are moreover allowed the error that rounding makes in their
+program.
 """
 
 from __future__ import annotations
@@ -72,7 +73,8 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
     for name in branches[0][0] if branches else ():
         is_value = name in dict(graph.outputs)
         stacked = np.array([[pair[b][name] for pair in branches] for b in range(2)], dtype=np.float64)
-        size = inputs if is_value else np.abs(stacked).max(axis=2)
+        is_matrix = is_value and len(dict(graph.outputs)[name].manifold.form.shape) > 1
+        size = inputs if is_value and not is_matrix else np.abs(stacked).max(axis=2)
         extra = np.where(rough, allowed.get(name, 0.0), 0.0)
         plain = BOUND * np.maximum(1.0, size)
         bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))

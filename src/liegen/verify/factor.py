@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .accuracy import accuracy, agreement
+from liegen.trace import Graph
+
+from .accuracy import Results, accuracy, agreement
 from .backends import Backend, Workspace, backends
 from .differences import differences
 from .domain import domain
 from .draws import AnyFunction, Samples, batch, draw_samples
-from .expected import compare, expect
+from .expected import Expected, compare, expect
+from .in_place import in_place
 from .report import Check, FactorReport
 from .taylor import taylor
 
@@ -34,27 +37,45 @@ def check_factor(
     computed = backends(function.kernel, place)
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
     expected = expect(function, drawn.inside, conditioned=conditioned)
-    taken = results[TAKEN]
-    branches = compare(expected, taken)[0].branch.tolist()
-    values = next(b for b in computed if b.name == f"{TAKEN}, value")
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
+    return FactorReport(
+        function.name,
+        (
+            *accuracy(expected, results, drawn.refused, has_jacobians=bool(function.kernel.variables)),
+            agreement(expected, results | singles),
+            domain(function, drawn, computed, seed),
+            *(
+                _slopes(function.graph, drawn, expected, computed, results)
+                if function.kernel.variables
+                else ()
+            ),
+            *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
+            _compiled(place),
+        ),
+    )
+
+
+def _slopes(
+    graph: Graph,
+    drawn: Samples,
+    expected: Expected,
+    computed: Sequence[Backend],
+    results: Mapping[str, Results],
+) -> tuple[Check, Check]:
+    """The checks of Jacobians by differences and by remainders, where the reference is finite."""
+    taken = results[TAKEN]
+    branches = compare(expected, taken)[0].branch.tolist()
+    values = next(b for b in computed if b.name == f"{TAKEN}, value")
     usable = np.all([block.kept for block in expected.blocks], axis=0)
     smooth = [k for k in range(len(drawn.inside)) if usable[k]]
     kept = [drawn.inside[k] for k in smooth]
     jacobians = {name: array[smooth] for name, array in taken.items()}
     allowed = {b.name: b.bound[0][smooth] for b in expected.blocks if not b.is_value}
-    return FactorReport(
-        function.name,
-        (
-            *accuracy(expected, results, drawn.refused),
-            agreement(expected, results | singles),
-            domain(function, drawn, computed, seed),
-            differences(function.graph, kept, values.evaluate, jacobians),
-            taylor(function.graph, kept, jacobians, [branches[k] for k in smooth], allowed),
-            _compiled(place),
-        ),
+    return (
+        differences(graph, kept, values.evaluate, jacobians),
+        taylor(graph, kept, jacobians, [branches[k] for k in smooth], allowed),
     )
 
 

@@ -9,6 +9,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import TypeGuard
 
 from liegen.define import Function
+from liegen.modules import every_function
 
 from .backends import Workspace, workspace
 from .draws import AnyFunction
@@ -36,6 +37,11 @@ def _is_function(value: object) -> TypeGuard[AnyFunction]:
     return isinstance(value, Function)
 
 
+def everything() -> dict[str, AnyFunction]:
+    """The built-in factors and the functions of all groups: what must be right without any allowance."""
+    return library() | every_function()
+
+
 def verify(
     functions: Sequence[AnyFunction],
     *,
@@ -52,9 +58,9 @@ def verify(
     each core.
     Raises ToolError when a compiler is there but refuses the generated C.
     """
-    known = library()
+    known = everything()
     builtin = all(known.get(f.name) is f for f in functions)
-    source: Reload | None = library if builtin and reload is None else reload
+    source: Reload | None = everything if builtin and reload is None else reload
     strict = {f.name for f in functions if known.get(f.name) is f}
     count = min(workers or _cores(), len(functions) // WORTHWHILE) if source else 1
     with workspace([f.kernel for f in functions]) as place:

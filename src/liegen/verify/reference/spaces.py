@@ -185,6 +185,16 @@ _CONDITION = Space(
 )
 
 
+#: Results such as an adjoint; stored row by row, moved by addition.
+_MATRICES = Space(
+    dim=lambda m: len(m) * len(m[0]),
+    load=tuple,
+    store=lambda m, _: tuple(x for row in m for x in row),
+    retract=lambda m, d, _: add(m, d),
+    local=lambda m, n, _: sub(n, m),
+)
+
+
 def _leading(dim: int) -> Space:
     """Numbers of which the first ``dim`` move by addition and the rest stay: calibrations."""
     return Space(
@@ -204,12 +214,13 @@ SPACES: Mapping[str, Space] = {
     "Cal3DS2": _leading(9),
     "Cal3Bundler": _leading(3),
     "condition": _CONDITION,
+    "matrix": _MATRICES,
 }
 
 
 def _key(manifold: type[Value]) -> str:
-    """The name of the manifold; R1, R2, ... are all R."""
-    name = manifold.form.name
+    """The name of the manifold; R1, R2, ... are all R, matrices of any size "matrix"."""
+    name = manifold.form.name.rpartition(" ")[2]
     return "R" if name[:1] == "R" and name[1:].isdigit() else name
 
 
