@@ -13,7 +13,7 @@ SOURCE = ROOT / "src" / "liegen"
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "uncertainty", "trace", "differentiate", "program",
     "kernel", "derive", "define", "samples", "library", "modules", "sources", "emit", "native", "verify",
-    "bench", "explain", "cli",
+    "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")

@@ -13,7 +13,7 @@ import numpy as np
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value, Vector
 from liegen.manifolds.node import called, here
-from liegen.trace import FrameReport, Graph, Outputs, Signature, inlined, signature, trace
+from liegen.trace import FrameReport, Graph, Outputs, Signature, inlined, latex, signature, trace
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -89,6 +89,10 @@ class Function(Generic[P, T]):
             entries = np.stack(np.broadcast_arrays(*results[port.name]), axis=-1).astype(np.float64)
             arrays[port.name] = entries.reshape(*entries.shape[:-1], *port.shape)
         return arrays
+
+    def _repr_latex_(self) -> str:
+        """The formula and its Jacobians, as notebooks show them."""
+        return f"$$\n{latex(self.graph)}\n$$"
 
     def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
         free = [s for s in self.declared if s.bound is None]

@@ -9,7 +9,7 @@ from typing import Any
 from liegen.define import Function
 from liegen.kernel import Kernel
 from liegen.manifolds import Leaf
-from liegen.trace import Graph
+from liegen.trace import Graph, jacobian_formulas, latex
 from liegen.trace.jacobian_text import legend
 
 AnyFunction = Function[..., Any]
@@ -74,6 +74,13 @@ def explanation(function: AnyFunction) -> str:
     lines += _section(f"{counted}, after each pass", _pass_rows(kernel))
     lines += _section("Operations by kind", _kind_rows(kernel))
     return "\n".join(lines) + "\n"
+
+
+def latex_explanation(function: AnyFunction) -> str:
+    """The same formulas as an ``aligned`` environment of LaTeX, after comments on what the blocks are."""
+    graph, row = function.graph, summary(function)
+    comments = [f"{row.name}({row.arguments}) -> {row.results}", *legend(jacobian_formulas(graph))]
+    return "".join(f"% {line}\n" for line in comments) + latex(graph) + "\n"
 
 
 def _section(title: str, lines: Iterable[str]) -> list[str]:

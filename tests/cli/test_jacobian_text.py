@@ -118,7 +118,12 @@ def vectors(v: R3, w: R3, k: R1, *, z: R2):
 
 @factor
 def constant_matrix(v: R3, w: R3):
-    return MATRIX @ cross(v, w)
+    return MATRIX @ cross(v, w) + MATRIX @ (v - w) - MATRIX @ (2 * v)
+
+
+@factor
+def chosen(v: R3, k: R1):
+    return where((k > 5) | ~(k <= 4), -v, 2 * v) - where((k > 0.1) & (v[0] < v[1] + k), v, -(v * 2))
 
 
 @factor
@@ -139,7 +144,7 @@ def chained(x: SE3, v: R3):
 CASES_OF_GROUP = [
     (group_operations, SE3), (group_operations_2d, SE2), (pose_pieces, SE3), (pose_pieces_2d, SE2),
     (rotation_of_pose, SO3), (rotation_of_pose_2d, SO2), (directions, SE3), (bearing_2d, SE2), (vectors, SE3),
-    (constant_matrix, SE3), (scalars, SE3), (chained, SE3), (library.between_so3, SO3),
+    (constant_matrix, SE3), (chosen, SE3), (scalars, SE3), (chained, SE3), (library.between_so3, SO3),
     (library.between_se2, SE2), (library.range_se2, SE2), (library.range_se3, SE3), (library.prior_so3, SO3),
 ]  # fmt: skip
 

@@ -12,6 +12,7 @@ from liegen.errors import LiegenError
 
 from .bench import bench
 from .check import check
+from .check_jacobian import check_jacobian
 from .describe import explain, list_factors
 from .generate import generate
 from .verify import verify
@@ -69,7 +70,7 @@ def app(debug: bool) -> None:
     """
 
 
-for command in (list_factors, generate, verify, check, explain, bench):
+for command in (list_factors, generate, verify, check, explain, check_jacobian, bench):
     app.add_command(command)
 
 

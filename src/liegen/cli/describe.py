@@ -31,9 +31,10 @@ def list_factors(source: str | None, groups: tuple[str, ...], as_json: bool) -> 
 @click.argument("name")
 @source_argument
 @groups_option
-def explain(name: str, source: str | None, groups: tuple[str, ...]) -> None:
+@click.option("--latex", "as_latex", is_flag=True, help="Print the residual and its Jacobians in LaTeX.")
+def explain(name: str, source: str | None, groups: tuple[str, ...], as_latex: bool) -> None:
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
-    from liegen.explain import explanation
+    from liegen.explain import explanation, latex_explanation
 
     (function,) = chosen(source, [name], groups)
-    click.echo(explanation(function), nl=False)
+    click.echo((latex_explanation if as_latex else explanation)(function), nl=False)

@@ -15,6 +15,8 @@ from .graph import Graph as Graph
 from .graph import Parameter as Parameter
 from .graph import topological as topological
 from .jacobian_text import jacobian_formulas as jacobian_formulas
+from .latex_text import latex as latex
+from .latex_text import latex_rows as latex_rows
 from .tracer import Outputs as Outputs
 from .tracer import Signature as Signature
 from .tracer import inlined as inlined

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
 
 from liegen.manifolds import Leaf, Node
 
 from .graph import Graph
+from .notation import ATOM, Text
 
-_CALL = 9
-_INFIX = {" + ": 1, " - ": 1, "-": 2, " * ": 3, " / ": 3, " @ ": 4}
-
-
-@dataclass(frozen=True)
-class Text:
-    """A formula and how strongly it binds."""
-
-    text: str
-    strength: int  # how strongly it binds; calls and names most
+#: How strongly the signs of the user's own notation bind.
+_INFIX = {" < ": 0, " <= ": 0, " + ": 1, " - ": 1, "-": 2, " * ": 3, " / ": 3, " @ ": 4, "M @ ": 4}
+_LOGIC = (" & ", " | ", "~")
+_CALL = ATOM
+#: The text of one node from the texts of its operands.
+Show = Callable[[Node, Mapping[int, Text]], Text]
 
 
 def formula(graph: Graph) -> tuple[str, ...]:
@@ -36,12 +32,12 @@ def formula(graph: Graph) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def texts_of(graph: Graph, names: Mapping[int, str]) -> dict[int, Text]:
+def texts_of(graph: Graph, names: Mapping[int, str], printed: Show | None = None) -> dict[int, Text]:
     """The text of every node by its identity, in which nodes with a name are called by it."""
     texts: dict[int, Text] = {}
     for node in graph.nodes():
-        called = {id(n): Text(names[id(n)], _CALL) if id(n) in names else texts[id(n)] for n in node.operands}
-        texts[id(node)] = show(node, called)
+        called = {id(n): Text(names[id(n)], ATOM) if id(n) in names else texts[id(n)] for n in node.operands}
+        texts[id(node)] = (printed or show)(node, called)
     return texts
 
 
@@ -70,7 +66,7 @@ def free_names(taken: set[str]) -> Iterator[str]:
         k += 1
 
 
-def show(node: Node, texts: dict[int, Text]) -> Text:
+def show(node: Node, texts: Mapping[int, Text]) -> Text:
     """The text of one node from the texts of its operands."""
     pattern = node.operation.show
     if isinstance(node.operation, Leaf):
@@ -82,7 +78,11 @@ def show(node: Node, texts: dict[int, Text]) -> Text:
 
 def _operand(pattern: str, k: int, strength: int, operand: Text) -> str:
     """Parentheses where the place binds more strongly than the operand."""
-    after = pattern.partition(f"{{{k}}}")[2]
-    receiver = after.startswith((".", "["))
-    needed = _CALL if receiver else strength + (k > 0) if strength < _CALL else 0
+    before, _, after = pattern.partition(f"{{{k}}}")
+    if after.startswith((".", "[")):
+        needed = _CALL
+    elif any(sign in pattern for sign in _LOGIC):
+        needed = 1
+    else:
+        needed = strength + (before != "") if strength < _CALL else 0
     return f"({operand.text})" if operand.strength < needed else operand.text

@@ -11,7 +11,7 @@ from liegen.manifolds import Calibration, Leaf, Manifold, Node, Value, Vector
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
 
-from .formulas import Text, show
+from .formulas import show
 from .frame_names import Declared, Kind, is_map, needed
 from .frame_report import FrameReport
 from .frame_rules import rule
@@ -19,10 +19,11 @@ from .frame_step import HATCH, Step
 from .frame_terms import Frame, Framed, Known, Solver, Sought, mapping, sought, vector
 from .frame_text import lines
 from .graph import Call, Graph, Parameter
+from .notation import ATOM, Text
 
 #: Operands longer than this are shown as dots.
 _LONG = 60
-_DOTS = Text("...", 9)
+_DOTS = Text("...", ATOM)
 
 
 def check_frames(graph: Graph) -> FrameReport:
