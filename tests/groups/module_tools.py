@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GENERATE = "liegen generate --group SO2 --group SE2 --group SO3 --group SE3 -o DIR"
+GENERATE = "liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR"
 
 
 def skew(v):

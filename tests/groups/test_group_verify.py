@@ -11,6 +11,7 @@ import pytest
 from liegen.emit import render
 from liegen.modules import every_function
 from liegen.native import find_compiler
+from liegen.samples import CASES
 from liegen.verify.backends import PACKAGE, Workspace, workspace
 from liegen.verify.compiled import compile_c
 from liegen.verify.draws import batch, draw_samples
@@ -43,7 +44,7 @@ def test_every_check_passes(name, place):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_every_check_passes_at_every_case(name, place):
-    assert not failures(check_factor(FUNCTIONS[name], place, 128, 2024, conditioned=False))
+    assert not failures(check_factor(FUNCTIONS[name], place, 2 * len(CASES), 2024, conditioned=False))
 
 
 @pytest.mark.parametrize("name", ["se3_adjoint", "se3_ad", "se3_Jr", "se3_Jl_inv", "se2_Jr"])

@@ -1,7 +1,7 @@
 """What the reference says at every sample, as arrays, and how far from it a computed result may be.
 
-Error bound: 2e-14 max(1, s), with s the largest absolute entry of the reference's Jacobian or matrix, or of
-the inputs for any other output. Beyond a quarter turn on S2 it is divided by the sine of the angle: rounding
+Error bound: 2e-14 max(1, s), with s the largest absolute entry of the reference's Jacobian or matrix, of the
+inputs for a residual, and of both for any other output. Beyond a quarter turn on S2 it is divided by the sine of the angle: rounding
 of the stored unit vectors does that to any method. Samples that are ill-conditioned by their nature, and
 factors of users, which may be so anywhere, are moreover allowed the error that rounding makes in their
 program.
@@ -25,6 +25,8 @@ from .rounding import rounding
 Array = NDArray[np.float64]
 
 BOUND = 2e-14
+#: The output of a factor.
+RESIDUAL = "res"
 #: Nearer to the antipode than this a direction on S2 has no useful tangent [rad].
 ANTIPODE = 0.99e-6
 EPS = float(np.finfo(np.float64).eps)
@@ -74,7 +76,9 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
         is_value = name in dict(graph.outputs)
         stacked = np.array([[pair[b][name] for pair in branches] for b in range(2)], dtype=np.float64)
         is_matrix = is_value and len(dict(graph.outputs)[name].manifold.form.shape) > 1
-        size = inputs if is_value and not is_matrix else np.abs(stacked).max(axis=2)
+        size = np.abs(stacked).max(axis=2)
+        if is_value and not is_matrix:
+            size = inputs if name == RESIDUAL else np.maximum(inputs, size)
         extra = np.where(rough, allowed.get(name, 0.0), 0.0)
         plain = BOUND * np.maximum(1.0, size)
         bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))
