@@ -1,10 +1,10 @@
 """What the reference says at every sample, as arrays, and how far from it a computed result may be.
 
 Error bound: 2e-14 max(1, s), with s the largest absolute entry of the reference's Jacobian or matrix, of the
-inputs for a residual, and of both for any other output. Beyond a quarter turn on S2 it is divided by the sine of the angle: rounding
-of the stored unit vectors does that to any method. Samples that are ill-conditioned by their nature, and
-factors of users, which may be so anywhere, are moreover allowed the error that rounding makes in their
-program.
+inputs for a residual, and of both for any other output. Beyond a quarter turn on S2 it is divided by the sine
+of the angle: rounding of the stored unit vectors does that to any method. Samples that are ill-conditioned by
+their nature, and factors of users, which may be so anywhere, are moreover allowed the error that rounding
+makes in their program.
 """
 
 from __future__ import annotations
