@@ -20,6 +20,8 @@ LICENCE = (
 
 def storage_text(item: Argument | Output) -> str:
     """``SE3 (qx, qy, qz, qw, x, y, z)``; the manifold alone where it stores one number."""
+    if isinstance(item, Argument) and item.meaning:
+        return item.meaning
     return f"{item.manifold} ({', '.join(item.storage)})" if item.size > 1 else item.manifold
 
 
@@ -50,7 +52,7 @@ def doc_lines(kernel: Kernel) -> list[str]:
 
 def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     """Formula, frames, conventions, shapes, operation counts, how to regenerate, licence."""
-    shapes = [f"{a.name}: {a.size}, {argument_text(a)}" for a in kernel.arguments]
+    shapes = [f"{a.name}: {' x '.join(map(str, a.shape))}, {argument_text(a)}" for a in kernel.arguments]
     shapes += [f"{o.name}: {o.size}, {storage_text(o)}" for o in kernel.outputs]
     shapes += [f"{name}: {m} x {n}, {meaning}" for name, (m, n), meaning in jacobian_texts(kernel)]
     messages = [f"bit {k}: {r.message}" for k, r in enumerate(kernel.value.requirements)]
@@ -59,6 +61,7 @@ def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     lines = [kernel.name, "", *doc_lines(kernel)]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Noise and loss", kernel.noise)
     lines += _section("Frames", kernel.frames)
     lines += _section("Conventions", kernel.conventions)
     lines += _section("Shapes", shapes)
