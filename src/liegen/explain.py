@@ -67,8 +67,9 @@ def explanation(function: AnyFunction) -> str:
     lines = [f"{row.name}({row.arguments}) -> {row.results}", *_indented(kernel.doc.strip().splitlines())]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Noise and loss", kernel.noise)
     lines += _section("Frames", function.frames.lines)
-    lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.graph)])
+    lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.plain)])
     lines += _section("Conventions", kernel.conventions)
     lines += _section("Operations with Jacobians, after each pass", _pass_rows(kernel))
     lines += _section("Operations by kind", _kind_rows(kernel))

@@ -124,8 +124,7 @@ def _barron(x: Scalar, alpha: Scalar) -> Scalar:
     convex, b = _distance(alpha)
     h = log1p_over(x, b)
     quadratic = lt(0.0, b)
-    y = x / safe(quadratic, b, 1.0)
-    v = log1p(y) + 0.5 * select(convex, h, -h)
+    v = h / safe(quadratic, b, 1.0) + 0.5 * select(convex, h, -h)
     return select(quadratic, h * expm1_ratio(v), x)
 
 

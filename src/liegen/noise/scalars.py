@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from functools import reduce
 
-from liegen.algebra import Scalar, call, fabs, lt, select
+from liegen.algebra import Scalar, call, fabs, lt, select, sqrt
 
 #: Below, log(1 + y) is a series in z^2 with z = y / (2 + y) <= 1/9, whose tenth term is below 2^-53.
 _SMALL = 0.25
+#: From here on, log(1 + x/b) is 2 log(1 + sqrt(x/b)) to the last digit.
+_HUGE = 1e40
 _LOG = tuple(1.0 / (2 * k + 1) for k in range(10))
 _EXP = tuple(1.0 / d for d in (1, 2, 6, 24, 120, 720, 5040, 40320, 362880, 3628800, 39916800, 479001600))
 
@@ -26,18 +28,14 @@ def log1p_over(x: Scalar, b: Scalar) -> Scalar:
     """b log(1 + x/b) for x >= 0, b >= 0: 0 for b = 0, x for b = inf."""
     positive = lt(0.0, b)
     b = safe(positive, b, 1.0)
-    y = x / b
-    y = select(lt(y, _LARGEST), y, _LARGEST)
+    huge = lt(_HUGE * b, x)
+    y = select(huge, sqrt(x), x) / select(huge, sqrt(b), b)  # x/b might overflow, its root does not
     near = lt(y, _SMALL)
     z = y / (2.0 + y)
     series = 2.0 * x / (2.0 + y) * horner(_LOG, z * z)
     # an infinite b is near: its product with log(1) = 0 must not be taken
-    far = safe(near, 1.0, b) * call("log", 1.0 + y)
+    far = select(near, 1.0, select(huge, 2.0 * b, b)) * call("log", 1.0 + y)
     return select(positive, select(near, series, far), 0.0)
-
-
-#: x/b is cut here: 5e-15 of error at most, where x/b overflows.
-_LARGEST = 1e308
 
 
 def log1p(y: Scalar) -> Scalar:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from .differences import differences
 from .domain import domain
 from .draws import AnyFunction, Samples, batch, draw_samples
 from .expected import compare, expect
+from .gradient import gradient, not_applicable
 from .report import Check, FactorReport
 from .taylor import taylor
 
@@ -33,13 +35,28 @@ def check_factor(
         return FactorReport(function.name, (_nothing(function, drawn),))
     computed = backends(function.kernel, place)
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
+    weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
+    if weighting:
+        values_only = tuple(b for b in expected.blocks if b.is_value)
+        expected = replace(expected, blocks=values_only)
     taken = results[TAKEN]
     branches = compare(expected, taken)[0].branch.tolist()
     values = next(b for b in computed if b.name == f"{TAKEN}, value")
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
+    if weighting:
+        value, _ = accuracy(expected, results, drawn.refused)
+        checks = (
+            value,
+            gradient(function, weighting, drawn.inside, results, branches),
+            agreement(expected, results | singles),
+            domain(function, drawn, computed, seed),
+            *(not_applicable(name, weighting.mode.name) for name in ("Jacobian", "differences", "Taylor")),
+            _compiled(place),
+        )
+        return FactorReport(function.name, checks)
     usable = np.all([block.kept for block in expected.blocks], axis=0)
     smooth = [k for k in range(len(drawn.inside)) if usable[k]]
     kept = [drawn.inside[k] for k in smooth]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from . import cameras, groups, vectors
+from . import cameras, groups, vectors, weights
 from .calls import Call, Rule
 from .logarithms import Branch
 from .matrix import Element, Vector, mp
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 #: Working precision. Rounding grows to about 1e-70 in a residual; differences lose another 25 digits.
 DIGITS = 80
 
-OPERATIONS: Mapping[str, Rule] = {**groups.OPERATIONS, **vectors.OPERATIONS, **cameras.OPERATIONS}
+OPERATIONS: Mapping[str, Rule] = {
+    **groups.OPERATIONS, **vectors.OPERATIONS, **cameras.OPERATIONS, **weights.OPERATIONS,
+}  # fmt: skip
 Sample = Mapping[str, Sequence[float]]
 
 
