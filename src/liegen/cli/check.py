@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .generate import Request, generate, rendered, requested
-from .shared import chosen, source_argument
+from .shared import source_argument
 
 if TYPE_CHECKING:
     from liegen.emit import TreeReport
@@ -36,7 +37,7 @@ def check(directory: str, source: str | None) -> None:
     for manifest in _manifests(folder):
         stated = str(manifest["options"]["regenerate"])
         request = _request(stated, folder, source)
-        files = rendered(request, chosen(request.source, request.names), stated)
+        files = rendered(request, request.chosen(request.source), stated)
         report = check_tree(files, folder)
         for line in _lines(report, folder, len(files)):
             click.echo(line)
@@ -84,8 +85,9 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    request = requested(original, given["names"], given["targets"], given["package"], given["layout"])
-    return Request(place, request.names, request.targets, request.package, request.layout)
+    request = requested(original, given["names"], given["targets"], given["package"], given["layout"],
+                        given["noise"], given["loss"], given["mode"])  # fmt: skip
+    return replace(request, source=place)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:

@@ -6,7 +6,7 @@ import json
 
 import click
 
-from .shared import chosen, source_argument, table
+from .shared import chosen, noise_options, source_argument, table, weighed
 
 
 @click.command("list")
@@ -29,9 +29,12 @@ def list_factors(source: str | None, as_json: bool) -> None:
 @click.command()
 @click.argument("name")
 @source_argument
-def explain(name: str, source: str | None) -> None:
+@noise_options
+def explain(
+    name: str, source: str | None, noise: str | None, loss: str | None, mode: str | None
+) -> None:
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
     from liegen.explain import explanation
 
-    (function,) = chosen(source, [name])
+    (function,) = weighed(chosen(source, [name]), noise, loss, mode)
     click.echo(explanation(function), nl=False)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, names_option, source_argument, table, tracked
+from .shared import chosen, names_option, noise_options, source_argument, table, tracked, weighed
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -34,6 +34,13 @@ class Request:
     targets: tuple[str, ...]
     package: str
     layout: str
+    noise: str | None = None
+    loss: str | None = None
+    mode: str | None = None
+
+    def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
+        """The factors that are asked for, of ``source``, whitened and robust as asked for."""
+        return weighed(chosen(source, self.names), self.noise, self.loss, self.mode)
 
     def command(self, source: str | None, directory: str) -> str:
         """The command line that repeats the request; options with their default value are left out."""
@@ -43,6 +50,8 @@ class Request:
         words += ["-o", directory]
         words += [] if self.package == default_package(source) else ["--package", self.package]
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
+        for option in ("noise", "loss", "mode"):
+            words += [f"--{option}", getattr(self, option)] if getattr(self, option) else []
         return shlex.join(words)
 
     @property
@@ -62,11 +71,16 @@ def default_package(source: str | None) -> str:
 
 
 def requested(
-    source: str | None, names: Sequence[str], targets: Sequence[str], package: str | None, layout: str
+    source: str | None,
+    names: Sequence[str],
+    targets: Sequence[str],
+    package: str | None,
+    layout: str,
+    *weighting: str | None,
 ) -> Request:
-    """Fill in the defaults."""
+    """Fill in the defaults; ``weighting`` is noise, loss and mode."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
-    return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout)
+    return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout, *weighting)
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -107,6 +121,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
     "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
     help="col adds C functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
+@noise_options
 def generate(
     source: str | None,
     names: tuple[str, ...],
@@ -114,12 +129,15 @@ def generate(
     output: str,
     package: str | None,
     layout: str,
+    noise: str | None,
+    loss: str | None,
+    mode: str | None,
 ) -> None:
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout)
-    functions = chosen(source, request.names)
+    request = requested(source, names, targets, package, layout, noise, loss, mode)
+    functions = request.chosen(source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]

@@ -11,7 +11,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, count, names_option, progress, source_argument, table
+from .shared import (
+    chosen,
+    count,
+    names_option,
+    noise_options,
+    progress,
+    source_argument,
+    table,
+    weighed,
+    weighed_by_name,
+)
 
 if TYPE_CHECKING:
     from liegen.verify import Check, FactorReport, Report
@@ -27,18 +37,27 @@ LISTED = 6
 @click.command()
 @source_argument
 @names_option
+@noise_options
 @click.option(
     "--samples", type=click.IntRange(min=1), help="Samples a factor; every special case by default."
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def verify(source: str | None, names: tuple[str, ...], samples: int | None, seed: int, as_json: bool) -> None:
+def verify(
+    source: str | None,
+    names: tuple[str, ...],
+    noise: str | None,
+    loss: str | None,
+    mode: str | None,
+    samples: int | None,
+    seed: int,
+    as_json: bool,
+) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
-    from liegen.sources import by_name
     from liegen.verify import verify as run
     from liegen.verify.run import SAMPLES
 
-    functions = chosen(source, names)
+    functions = weighed(chosen(source, names), noise, loss, mode)
     started = time.monotonic()
     with _shown(len(functions)) as told:
         report = run(
@@ -46,7 +65,7 @@ def verify(source: str | None, names: tuple[str, ...], samples: int | None, seed
             samples=samples or SAMPLES,
             seed=seed,
             progress=told,
-            reload=partial(by_name, source),
+            reload=partial(weighed_by_name, source, noise, loss, mode),
         )
     if as_json:
         click.echo(report.to_json(), nl=False)
@@ -118,6 +137,8 @@ def _remarks(factor: FactorReport) -> Iterable[str]:
                 f"\n{factor.factor}: {check.name} failed: {check.worst:.3g} {check.unit} where "
                 f"{check.bound:.3g} is allowed, at: {check.where or 'no sample'}{note}"
             )
+        elif check.name == "Jacobian" and not check.checked:
+            yield f"{factor.factor}: Jacobian, differences, Taylor: {check.note}"
         elif check.note not in ("", EVERYWHERE) and check.checked:
             yield f"{factor.factor}: {check.name}: {check.note}"
 

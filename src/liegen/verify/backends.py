@@ -111,7 +111,9 @@ def numpy_backends(kernel: Kernel, folder: Path) -> tuple[Backend, Backend]:
 
 def _called(function: Any, kernel: Kernel, arguments: Arrays) -> Any:
     variables = [arguments[a.name] for a in kernel.variables]
-    return function(*variables, **{a.name: arguments[a.name] for a in kernel.given})
+    given = {a.name: arguments[a.name] for a in kernel.given}
+    shaped = {a.name: given[a.name].reshape(*given[a.name].shape[:-1], *a.shape) for a in kernel.given}
+    return function(*variables, **shaped)
 
 
 def load_package(folder: Path) -> Any:
