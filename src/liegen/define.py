@@ -183,7 +183,7 @@ class Function(Generic[P, T]):
             raise DefinitionError(
                 f"{here()}: {self.name} is a @function; noise and loss are of a @factor, which has a residual"
             )
-        return self._copy(self.declared, name, doc, None, read_weighting(noise, loss, mode))
+        return self._copy(self.declared, name, doc, None, read_weighting(noise, loss, mode, self.name))
 
     def _changed(
         self, names: tuple[str, ...], name: str, doc: str, sample: Sampler | None, *, variable: bool
@@ -259,7 +259,8 @@ def factor(
     its parameters. Outputs are then those of least squares on the cost 1/2 rho(|S r|^2), weighed by
     ``mode``: "irls" (the default) or "triggs".
     """
-    return _decorated(function, sample, is_factor=True, frames=frames, weighting=read_weighting(noise, loss, mode))
+    weighting = read_weighting(noise, loss, mode, str(here()))
+    return _decorated(function, sample, is_factor=True, frames=frames, weighting=weighting)
 
 
 @overload

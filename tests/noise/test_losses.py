@@ -10,7 +10,8 @@ from scipy.optimize import least_squares
 
 from liegen.noise import LOSSES
 
-POINTS = (0.0, 5e-324, 1e-300, 1e-160, 1e-20, 1e-8, 1e-3, 0.1, 0.2499, 0.2501, 0.5, 0.9, 1.5, 4.0, 30.0, 1e3, 1e10,
+POINTS = (0.0, 5e-324, 1e-300, 1e-160, 1e-20, 1e-8, 1e-3, 0.1, 0.2499, 0.2501, 0.5, 0.9, 1.5, 4.0, 30.0, 1e3,
+          1e10,
           1e100, 1e300)  # fmt: skip
 ROWS = [(name, shape) for name, loss in LOSSES.items() for shape in loss.shapes]
 SCALES = (1.0, 1.345, 3e-5, 2e4)
@@ -62,7 +63,9 @@ def test_slope_is_one_at_zero(name):
             assert float(LOSSES[name].slope(np.float64(0), *map(np.float64, (*shape, scale)))) == 1.0
 
 
-@pytest.mark.parametrize(("name", "theirs"), [("huber", "huber"), ("pseudo-huber", "soft_l1"), ("cauchy", "cauchy")])
+@pytest.mark.parametrize(
+    ("name", "theirs"), [("huber", "huber"), ("pseudo-huber", "soft_l1"), ("cauchy", "cauchy")]
+)
 def test_scipy_has_the_same_cost(name, theirs):
     for r in (0.0, 1e-3, 0.5, 1.2, 1.5, 40.0):
         # no step is taken from the start, so the cost is that of r; SciPy's is 1/2 C^2 rho((r/C)^2)
@@ -71,10 +74,14 @@ def test_scipy_has_the_same_cost(name, theirs):
         assert found.cost == pytest.approx(mine, rel=4e-15, abs=1e-15)  # theirs cancels near 0
 
 
-@pytest.mark.parametrize(("alpha", "other"), [(0.0, "cauchy"), (-2.0, "geman-mcclure"), (1.0, "pseudo-huber")])
+@pytest.mark.parametrize(
+    ("alpha", "other"), [(0.0, "cauchy"), (-2.0, "geman-mcclure"), (1.0, "pseudo-huber")]
+)
 def test_barron_contains_the_others(alpha, other):
     """Barron (2019), section 1: Charbonnier at 1, Cauchy at 0, Geman-McClure at -2, with scaled c."""
     b = 2.0 - alpha
     for x in (0.0, 0.3, 7.0):
         mine = LOSSES["barron"].rho(np.float64(x), np.float64(alpha), np.float64(1.0))
-        assert float(mine) == pytest.approx(float(LOSSES[other].rho(np.float64(x), np.float64(np.sqrt(b)))), rel=1e-14)
+        assert float(mine) == pytest.approx(
+            float(LOSSES[other].rho(np.float64(x), np.float64(np.sqrt(b)))), rel=1e-14
+        )

@@ -30,9 +30,7 @@ def list_factors(source: str | None, as_json: bool) -> None:
 @click.argument("name")
 @source_argument
 @noise_options
-def explain(
-    name: str, source: str | None, noise: str | None, loss: str | None, mode: str | None
-) -> None:
+def explain(name: str, source: str | None, noise: str | None, loss: str | None, mode: str | None) -> None:
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
     from liegen.explain import explanation
 

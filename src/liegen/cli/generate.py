@@ -80,7 +80,9 @@ def requested(
 ) -> Request:
     """Fill in the defaults; ``weighting`` is noise, loss and mode."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
-    return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout, *weighting)
+    return Request(
+        source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout, *weighting
+    )
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:

@@ -6,6 +6,8 @@ square root of the information matrix, S^T S = covariance^-1.
 
 from __future__ import annotations
 
+from .extend import cost_graph as cost_graph
+from .extend import weighted_graph as weighted_graph
 from .losses import LOSSES as LOSSES
 from .losses import Loss as Loss
 from .models import NOISES as NOISES
@@ -14,5 +16,3 @@ from .weigh import MODES as MODES
 from .weigh import Weight as Weight
 from .weigh import Weighting as Weighting
 from .weigh import weighting as weighting
-from .extend import cost_graph as cost_graph
-from .extend import weighted_graph as weighted_graph

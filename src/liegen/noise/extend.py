@@ -66,6 +66,6 @@ def _check_names(graph: Graph, weights: tuple[Weight, ...]) -> None:
     for weight in weights:
         if weight.name in own:
             raise DefinitionError(
-                f"{graph.site}: {graph.name}: argument {weight.name!r} has the name of what noise or loss adds "
+                f"{graph.site}: {graph.name}: argument {weight.name!r} is also what noise or loss adds "
                 f"({weight.meaning}); rename the argument"
             )

@@ -22,7 +22,7 @@ from liegen.algebra import Scalar, call, lt, select, sqrt
 from .scalars import expm1_ratio, log1p, log1p_over, safe
 
 #: A function of x = s / k^2 and of the loss's shape parameters.
-Normalised = Callable[..., Scalar]
+Normalised = Callable[[Scalar], Scalar] | Callable[[Scalar, Scalar], Scalar]
 
 
 @dataclass(frozen=True)
@@ -49,22 +49,31 @@ class Loss:
         *shape, k = parameters
         return s / k / k, shape
 
+    def weights(self, s: Scalar, parameters: Sequence[Scalar]) -> tuple[Scalar, Scalar, Scalar]:
+        """x, root and bend at s."""
+        x, shape = self.normalised(s, parameters)
+        return x, _at(self.root, x, shape), _at(self.bend, x, shape)
+
     def rho(self, s: Scalar, *parameters: Scalar) -> Scalar:
         """rho(s); twice the cost."""
         x, shape = self.normalised(s, parameters)
-        return self.R(x, *shape) * parameters[-1] * parameters[-1]
+        return _at(self.R, x, shape) * parameters[-1] * parameters[-1]
 
     def slope(self, s: Scalar, *parameters: Scalar) -> Scalar:
         """rho'(s), the weight of iteratively reweighted least squares."""
         x, shape = self.normalised(s, parameters)
-        root = self.root(x, *shape)
+        root = _at(self.root, x, shape)
         return root * root
 
     def curvature(self, s: Scalar, *parameters: Scalar) -> Scalar:
         """rho''(s); beside a kink that of the side towards 0."""
         x, shape = self.normalised(s, parameters)
         k = parameters[-1]
-        return -0.5 * self.slope(s, *parameters) * self.bend(x, *shape) / k / k
+        return -0.5 * self.slope(s, *parameters) * _at(self.bend, x, shape) / k / k
+
+
+def _at(form: Any, x: Scalar, shape: Sequence[Scalar]) -> Scalar:
+    return form(x, *shape)
 
 
 def _outside(x: Scalar) -> tuple[Scalar, Scalar]:
@@ -120,7 +129,7 @@ def _distance(alpha: Scalar) -> tuple[Scalar, Scalar]:
 
 
 def _barron(x: Scalar, alpha: Scalar) -> Scalar:
-    """Barron's (1 + x/b)^(alpha/2) is exp(v), and (b/alpha) (exp(v) - 1) is b log(1 + x/b) (e^v - 1) / (2 v)."""
+    """With v = alpha/2 log(1 + x/b): 2 b/alpha (e^v - 1) = b log(1 + x/b) (e^v - 1)/v."""
     convex, b = _distance(alpha)
     h = log1p_over(x, b)
     quadratic = lt(0.0, b)

@@ -11,9 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.algebra import Scalar, lt, select, sqrt
-from liegen.algebra.linear import Matrix, Vector, dot, matmul, matscale, matvec, scale, sub
+from liegen.algebra.linear import (
+    Matrix,
+    Vector,
+    dot,
+    eye,
+    is_structural,
+    matmul,
+    matscale,
+    matvec,
+    scale,
+    sub,
+)
 from liegen.errors import DefinitionError
-from liegen.manifolds.node import here
 
 from .losses import LOSSES, Loss, known
 from .models import KEYWORD, NOISES, Noise
@@ -41,42 +51,47 @@ class Weight:
 
 
 @dataclass(frozen=True)
+class Weighed:
+    """The residual, and what makes the Jacobians of those of u: root (I - ratio u u^T)."""
+
+    root: Scalar
+    residual: Vector
+    ratio: Scalar
+
+
+@dataclass(frozen=True)
 class Mode:
-    """How a loss becomes part of least squares. ``weigh``: (loss, parameters, u, blocks) -> both, weighed."""
+    """How a loss becomes part of least squares.
+
+    ``formula`` has the residual, the Jacobian, and what they use, as text.
+    """
 
     name: str
     formula: tuple[str, str, str]
-    weigh: Callable[[Loss, Sequence[Scalar], Vector, Blocks[object]], tuple[Vector, dict[object, Matrix]]]
+    weigh: Callable[[Loss, Sequence[Scalar], Vector], Weighed]
 
 
-def _reweighted(
-    loss: Loss, parameters: Sequence[Scalar], u: Vector, blocks: Blocks[K]
-) -> tuple[Vector, dict[K, Matrix]]:
-    x, shape = loss.normalised(dot(u, u), parameters)
-    root = loss.root(x, *shape)
-    return scale(root, u), {key: matscale(root, J) for key, J in blocks.items()}
+def _reweighted(loss: Loss, parameters: Sequence[Scalar], u: Vector) -> Weighed:
+    _, root, _ = loss.weights(dot(u, u), parameters)
+    return Weighed(root, scale(root, u), 0)
 
 
-def _corrected(
-    loss: Loss, parameters: Sequence[Scalar], u: Vector, blocks: Blocks[K]
-) -> tuple[Vector, dict[K, Matrix]]:
+def _corrected(loss: Loss, parameters: Sequence[Scalar], u: Vector) -> Weighed:
     """Triggs et al. (1999), eq. 10 and 11: alpha = 1 - sqrt(D), D = 1 + 2 s rho''/rho' = 1 - x bend."""
     s, k = dot(u, u), parameters[-1]
-    x, shape = loss.normalised(s, parameters)
-    root, bend = loss.root(x, *shape), loss.bend(x, *shape)
+    x, root, bend = loss.weights(s, parameters)
     D = 1.0 - x * bend
     definite = lt(GAP * GAP, D)
     gap = sqrt(select(definite, D, GAP * GAP))
     # alpha / s, without 0/0 at s = 0: there D is 1
     ratio = select(definite, bend / k / k / (1.0 + gap), (1.0 - GAP) / select(definite, 1.0, s))
-    weighed = {
-        key: matscale(root, _along(u, ratio, J)) for key, J in blocks.items()
-    }  # fmt: skip
-    return scale(root / gap, u), weighed
+    return Weighed(root, scale(root / gap, u), ratio)
 
 
 def _along(u: Vector, ratio: Scalar, J: Matrix) -> Matrix:
     """(I - ratio u u^T) J."""
+    if is_structural(ratio):
+        return J
     (row,) = matmul((u,), J)
     moved = scale(ratio, row)
     return tuple(sub(own, scale(x, moved)) for own, x in zip(J, u, strict=True))
@@ -124,18 +139,22 @@ class Weighting:
         self, given: Mapping[str, Vector], r: Vector, blocks: Blocks[K]
     ) -> tuple[Vector, dict[K, Matrix]]:
         """The residual and its Jacobians, whitened and weighed. ``given`` holds the keywords' numbers."""
-        u, done = r, dict(blocks)
-        if self.noise:
-            S = self.noise.matrix(given[KEYWORD], len(r))
-            u, done = matvec(S, r), {key: matmul(S, J) for key, J in blocks.items()}
-        if self.loss:
-            weighed = self.mode.weigh(self.loss, self.parameters(given), u, done)  # type: ignore[arg-type]
-            return weighed  # type: ignore[return-value]
-        return u, done
+        m = len(r)
+        S = self.noise.matrix(given[KEYWORD], m) if self.noise else eye(m)
+        u = matvec(S, r)
+        if not self.loss:
+            return u, {key: matmul(S, J) for key, J in blocks.items()}
+        weighed = self.mode.weigh(self.loss, self.parameters(given), u)
+        # the root goes into S, which has fewer entries than the Jacobians
+        scaled = matscale(weighed.root, S)
+        return weighed.residual, {
+            key: _along(u, weighed.ratio, matmul(scaled, J)) for key, J in blocks.items()
+        }
 
     def cost(self, given: Mapping[str, Vector], r: Vector) -> Scalar:
         """1/2 rho(|S r|^2)."""
-        u, _ = Weighting(self.noise, None, self.mode).apply(given, r, {})
+        none: dict[str, Matrix] = {}
+        u, _ = Weighting(self.noise, None, self.mode).apply(given, r, none)
         s = dot(u, u)
         return 0.5 * (self.loss.rho(s, *self.parameters(given)) if self.loss else s)
 
@@ -169,16 +188,17 @@ class Weighting:
         return values
 
 
-def weighting(noise: str | None, loss: str | None, mode: str | None) -> Weighting | None:
-    """Read the names; None where neither noise nor loss is asked for. Raises DefinitionError for unknown ones."""
+def weighting(noise: str | None, loss: str | None, mode: str | None, where: str) -> Weighting | None:
+    """Read the names; None where neither noise nor loss is asked for.
+
+    Raises DefinitionError for unknown names, at ``where``.
+    """
     asked = (("noise", noise, NOISES), ("loss", loss, LOSSES), ("mode", mode, MODES))
     complaints = [known(what, name, table) for what, name, table in asked if name is not None]
     if any(complaints):
-        raise DefinitionError(f"{here()}: {'; '.join(filter(None, complaints))}")
+        raise DefinitionError(f"{where}: {'; '.join(filter(None, complaints))}")
     if mode is not None and loss is None:
-        raise DefinitionError(f"{here()}: mode={mode!r} is one of a loss; give loss= too")
+        raise DefinitionError(f"{where}: mode={mode!r} is one of a loss; give loss= too")
     if noise is None and loss is None:
         return None
-    return Weighting(
-        NOISES[noise] if noise else None, LOSSES[loss] if loss else None, MODES[mode or "irls"]
-    )
+    return Weighting(NOISES[noise] if noise else None, LOSSES[loss] if loss else None, MODES[mode or "irls"])

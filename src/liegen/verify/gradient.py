@@ -33,7 +33,10 @@ def gradient(
     results: Mapping[str, Mapping[str, Array]],
     branches: Sequence[int],
 ) -> Check:
-    """Compare J^T r of every back end with Jacobians; ``branches`` tells the logarithm taken at a half turn."""
+    """Compare J^T r of every back end that has Jacobians.
+
+    ``branches`` tells which logarithm the code took at a half turn.
+    """
     cost = cost_graph(function.plain, weighting)
     allowed = rounding(function.kernel.jacobians, batch(tuple(samples)))
     variables = [p.name for p in function.plain.parameters if p.variable]

@@ -6,6 +6,7 @@ Slopes and curvatures of rho are central differences of it; nothing of ``liegen.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from .calls import Call, Rule
 from .matrix import Number, Vector, dot, matvec, mp, scale
@@ -27,8 +28,9 @@ def _barron(s: Number, alpha: Number, c: Number) -> Number:
     return 2 * c**2 * b / alpha * ((x / b + 1) ** (alpha / 2) - 1)
 
 
+_Rho = Callable[[Number, Number], Number] | Callable[[Number, Number, Number], Number]
 #: rho(s, parameters in order).
-RHO: Mapping[str, Callable[..., Number]] = {
+RHO: Mapping[str, _Rho] = {
     "huber": lambda s, k: s if s <= k**2 else 2 * k * mp.sqrt(s) - k**2,
     "pseudo-huber": lambda s, k: 2 * k**2 * (mp.sqrt(1 + s / k**2) - 1),
     "cauchy": lambda s, c: c**2 * mp.log(1 + s / c**2),
@@ -43,9 +45,7 @@ def _white(noise: str, r: Vector, stored: Vector) -> Vector:
     """S r; below the diagonal the numbers do not count."""
     if noise == "full":
         m = len(r)
-        upper = tuple(
-            tuple(stored[i * m + j] if j >= i else mp.zero for j in range(m)) for i in range(m)
-        )
+        upper = tuple(tuple(stored[i * m + j] if j >= i else mp.zero for j in range(m)) for i in range(m))
         return matvec(upper, r)
     scales = stored if noise == "diagonal" else stored * len(r)
     return tuple(k * x for k, x in zip(scales, r, strict=True))
@@ -57,7 +57,10 @@ def _parts(call: Call) -> tuple[Vector, Callable[[Number], Number] | None, Numbe
     r, *rest = call.values
     u = _white(noise, r, rest.pop(0)) if noise else r
     numbers = [x for (x,) in rest]
-    return u, (lambda s: RHO[loss](s, *numbers)) if loss else None, numbers[-1] ** 2 if loss else mp.one
+    if not loss:
+        return u, None, mp.one
+    rho: Any = RHO[loss]
+    return u, lambda s: rho(s, *numbers), numbers[-1] ** 2
 
 
 def _cost(call: Call) -> Vector:
