@@ -185,7 +185,7 @@ def test_bad_names_list_those_that_exist():
 
 
 def test_bad_uses():
-    with pytest.raises(DefinitionError, match="is also what noise or loss adds .*; rename the argument"):
+    with pytest.raises(DefinitionError, match=r"is also what noise or loss adds .*; rename the argument"):
 
         @factor(noise="isotropic")
         def own(x: R1, *, sqrt_info: R1):
