@@ -13,6 +13,8 @@ import numpy as np
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value, Vector
 from liegen.manifolds.node import called, here
+from liegen.noise import Weighting, weighted_graph
+from liegen.noise import weighting as read_weighting
 from liegen.trace import FrameReport, Graph, Outputs, Signature, inlined, latex, signature, trace
 
 if TYPE_CHECKING:
@@ -29,8 +31,9 @@ Sampler = Callable[..., Mapping[str, Value]]
 class Function(Generic[P, T]):
     """A formula on Lie groups: callable on typed values, on arrays, and inside other formulas.
 
-    ``graph`` is what was traced, ``kernel`` what was derived from it (at its first use). ``in_place``: in C
-    an output may be written over an argument.
+    ``plain`` is what was traced; ``graph`` the same with the noise and loss of ``weighting``, if any;
+    ``kernel`` what was derived (at its first use). ``in_place``: in C an output may be written over an
+    argument.
     """
 
     function: Callable[..., Any]
@@ -41,20 +44,24 @@ class Function(Generic[P, T]):
     sampler: Sampler | None = None
     checked: bool = True  # whether frames are
     in_place: bool = False
+    weighting: Weighting | None = None
+    plain: Graph = field(init=False, repr=False)
     graph: Graph = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         graph = trace(
             self.function, self.declared, self.name, self.doc, factor=self.is_factor, frames=self.checked
         )
-        object.__setattr__(self, "graph", graph)
+        object.__setattr__(self, "plain", graph)
+        weighted = weighted_graph(graph, self.weighting) if self.weighting else graph
+        object.__setattr__(self, "graph", weighted)
 
     @cached_property
     def kernel(self) -> Kernel:
         """The derived factor."""
         from liegen.derive import derive
 
-        return derive(self.graph, in_place=self.in_place)
+        return derive(self.plain, self.weighting, in_place=self.in_place)
 
     @property
     def frames(self) -> FrameReport:
@@ -69,6 +76,11 @@ class Function(Generic[P, T]):
         """
         values = self._bound(args, kwargs)
         if any(v.traced for v in values.values()):
+            if self.weighting:
+                raise DefinitionError(
+                    f"{here()}: {self.name} has noise or a loss, which are applied to a finished residual; "
+                    "call the factor without them here, and give noise= and loss= to the outer factor"
+                )
             complete = {s.name: s.bound if s.bound is not None else values[s.name] for s in self.declared}
             named = {s.name: complete[s.name] for s in self.declared if not s.positional}
             result: Any = self.function(*(complete[s.name] for s in self.declared if s.positional), **named)
@@ -95,7 +107,7 @@ class Function(Generic[P, T]):
         return f"$$\n{latex(self.graph)}\n$$"
 
     def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
-        free = [s for s in self.declared if s.bound is None]
+        free = self._free
         positional = [s.name for s in free if s.variable] or [s.name for s in free]
         given = dict(zip(positional, args, strict=False)) | dict(kwargs)
         missing = [s.name for s in free if s.name not in given]
@@ -106,8 +118,30 @@ class Function(Generic[P, T]):
             raise DefinitionError(f"{here()}: call it as {self.name}({usage})")
         return {s.name: self._coerced(s, given[s.name]) for s in free}
 
+    @property
+    def _free(self) -> list[Signature]:
+        """What a call gives: the unbound parameters, and what noise and loss add."""
+        added = self.graph.parameters[len(self.plain.parameters) :]
+        weights = [Signature(p.name, p.manifold, False, False) for p in added]
+        return [s for s in self.declared if s.bound is None] + weights
+
+    def _shape(self, name: str) -> tuple[int, ...]:
+        """The array of an argument that noise or loss adds; empty for others."""
+        m = self.plain.outputs[0][1].manifold.form.dim
+        weights = self.weighting.weights(m) if self.weighting else ()
+        return next((w.shape for w in weights if w.name == name), ())
+
     def _coerced(self, s: Signature, value: Any) -> Value:
         if not isinstance(value, Value):
+            shape = self._shape(s.name)
+            if len(shape) > 1:
+                matrix = np.asarray(value, dtype=np.float64)
+                if matrix.shape[-2:] != shape:
+                    raise DefinitionError(
+                        f"{here()}: {self.name}: argument {s.name!r}: an array of shape "
+                        f"(..., {', '.join(map(str, shape))}) is needed, this one has shape {matrix.shape}"
+                    )
+                value = matrix.reshape(*matrix.shape[:-2], -1)
             return s.manifold.from_storage(value)
         if value.form != s.manifold.form:
             raise DefinitionError(
@@ -139,6 +173,25 @@ class Function(Generic[P, T]):
         )
         return self._copy(declared, name, doc, sample)
 
+    def whitened(
+        self,
+        noise: str | None = None,
+        loss: str | None = None,
+        mode: str | None = None,
+        *,
+        name: str = "",
+        doc: str = "",
+    ) -> Function[..., T]:
+        """The same factor with whitened and robust outputs; see :func:`factor` for the arguments.
+
+        Raises DefinitionError for a ``@function``, and for names that do not exist.
+        """
+        if not self.is_factor:
+            raise DefinitionError(
+                f"{here()}: {self.name} is a @function; noise and loss are of a @factor, which has a residual"
+            )
+        return self._copy(self.declared, name, doc, None, read_weighting(noise, loss, mode, self.name))
+
     def _changed(
         self, names: tuple[str, ...], name: str, doc: str, sample: Sampler | None, *, variable: bool
     ) -> Function[..., T]:
@@ -149,7 +202,12 @@ class Function(Generic[P, T]):
         return self._copy(declared, name, doc, sample)
 
     def _copy(
-        self, declared: tuple[Signature, ...], name: str, doc: str, sample: Sampler | None
+        self,
+        declared: tuple[Signature, ...],
+        name: str,
+        doc: str,
+        sample: Sampler | None,
+        weighting: Weighting | None = None,
     ) -> Function[..., T]:
         return Function(
             self.function,
@@ -160,6 +218,7 @@ class Function(Generic[P, T]):
             sample or self.sampler,
             self.checked,
             self.in_place,
+            weighting or self.weighting,
         )
 
     def _known(self, names: Any) -> None:
@@ -177,14 +236,39 @@ def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
 def factor(
     *, sample: Sampler | None = None, frames: bool = True
 ) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
-def factor(function: Any = None, /, *, sample: Sampler | None = None, frames: bool = True) -> Any:
+@overload
+def factor(
+    *,
+    noise: str | None = None,
+    loss: str | None = None,
+    mode: str | None = None,
+    sample: Sampler | None = None,
+    frames: bool = True,
+) -> Callable[[Callable[P, Vector]], Function[..., Vector]]: ...
+def factor(
+    function: Any = None,
+    /,
+    *,
+    noise: str | None = None,
+    loss: str | None = None,
+    mode: str | None = None,
+    sample: Sampler | None = None,
+    frames: bool = True,
+) -> Any:
     """Make a factor of a function that returns a residual vector.
 
     Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
     ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
     not declare frames.
+
+    ``noise`` ("full", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
+    covariance^-1, in the frame of the residual: an upper triangular matrix (..., m, m) whose lower part is
+    not read, or 1 / standard deviation (..., m) or (..., 1). ``loss`` (see ``liegen.noise.LOSSES``) adds
+    its parameters. Outputs are then those of least squares on the cost 1/2 rho(|S r|^2), weighed by
+    ``mode``: "irls" (the default) or "triggs".
     """
-    return _decorated(function, sample, is_factor=True, frames=frames)
+    weighting = read_weighting(noise, loss, mode, str(here()))
+    return _decorated(function, sample, is_factor=True, frames=frames, weighting=weighting)
 
 
 @overload
@@ -198,13 +282,20 @@ def function(function: Any = None, /, *, sample: Sampler | None = None, frames: 
     return _decorated(function, sample, is_factor=False, frames=frames)
 
 
-def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool, frames: bool) -> Callable[..., Any]:
+def _decorated(
+    function: Any,
+    sample: Sampler | None,
+    *,
+    is_factor: bool,
+    frames: bool,
+    weighting: Weighting | None = None,
+) -> Callable[..., Any]:
     if function is None:
-        return partial(_decorated, sample=sample, is_factor=is_factor, frames=frames)
+        return partial(_decorated, sample=sample, is_factor=is_factor, frames=frames, weighting=weighting)
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
-        function, signature(function), function.__name__, doc, is_factor, sample, frames
+        function, signature(function), function.__name__, doc, is_factor, sample, frames, weighting=weighting
     )
     return made

@@ -67,8 +67,9 @@ def explanation(function: AnyFunction) -> str:
     lines = [f"{row.name}({row.arguments}) -> {row.results}", *_indented(kernel.doc.strip().splitlines())]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Noise and loss", kernel.noise)
     lines += _section("Frames", function.frames.lines)
-    lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.graph)])
+    lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.plain)])
     lines += _section("Conventions", kernel.conventions)
     counted = "Operations with Jacobians" if kernel.variables else "Operations"
     lines += _section(f"{counted}, after each pass", _pass_rows(kernel))

@@ -10,13 +10,22 @@ from liegen.program import Program
 
 @dataclass(frozen=True)
 class Argument:
-    """A parameter: ``storage`` names its scalars (``qx`` to ``z`` for SE3), ``dim`` is its tangent's size."""
+    """A parameter: ``storage`` names its scalars (``qx`` to ``z`` for SE3), ``dim`` is its tangent's size.
+
+    ``shape`` is that of its array: (size,), or (rows, columns) for a matrix, whose storage is row-major.
+    ``meaning`` describes it where no manifold does.
+    """
 
     name: str
     manifold: str
     storage: tuple[str, ...]
     dim: int
     variable: bool
+    shape: tuple[int, ...] = ()
+    meaning: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", self.shape or (len(self.storage),))
 
     @property
     def size(self) -> int:
@@ -77,6 +86,7 @@ class Kernel:
     passes: tuple[PassCount, ...]
     frames: tuple[str, ...] = ()  # lines such as "T_WB: pose of B in W", where names declare frames
     in_place: bool = False
+    noise: tuple[str, ...] = ()  # how residual and Jacobians are whitened and weighed by a loss
 
     @property
     def variables(self) -> tuple[Argument, ...]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .generate import Request, generate, rendered, requested
-from .shared import chosen, source_argument
+from .shared import source_argument
 
 if TYPE_CHECKING:
     from liegen.emit import TreeReport
@@ -36,7 +36,7 @@ def check(directory: str, source: str | None) -> None:
     for folder, manifest in _manifests(Path(directory)):
         stated = str(manifest["options"]["regenerate"])
         request = _request(stated, folder, source)
-        files = rendered(request, chosen(request.source, request.names, request.groups), stated)
+        files = rendered(request, request.chosen(request.source), stated)
         report = check_tree(files, folder)
         for line in _lines(report, folder, len(files)):
             click.echo(line)
@@ -84,8 +84,8 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    values = (given[key] for key in ("names", "targets", "package", "layout", "groups"))
-    return replace(requested(original, *values), source=place)
+    options = ("names", "targets", "package", "layout", "groups", "noise", "loss", "mode")
+    return replace(requested(original, *(given[key] for key in options)), source=place)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:

@@ -6,7 +6,7 @@ import json
 
 import click
 
-from .shared import chosen, groups_option, source_argument, table
+from .shared import chosen, groups_option, noise_options, source_argument, table, weighed
 
 
 @click.command("list")
@@ -31,10 +31,19 @@ def list_factors(source: str | None, groups: tuple[str, ...], as_json: bool) -> 
 @click.argument("name")
 @source_argument
 @groups_option
+@noise_options
 @click.option("--latex", "as_latex", is_flag=True, help="Print the residual and its Jacobians in LaTeX.")
-def explain(name: str, source: str | None, groups: tuple[str, ...], as_latex: bool) -> None:
+def explain(
+    name: str,
+    source: str | None,
+    groups: tuple[str, ...],
+    noise: str | None,
+    loss: str | None,
+    mode: str | None,
+    as_latex: bool,
+) -> None:
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
     from liegen.explain import explanation, latex_explanation
 
-    (function,) = chosen(source, [name], groups)
+    (function,) = weighed(chosen(source, [name], groups), noise, loss, mode)
     click.echo((latex_explanation if as_latex else explanation)(function), nl=False)

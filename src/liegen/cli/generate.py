@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, groups_option, names_option, source_argument, table, tracked
+from .shared import (
+    chosen,
+    groups_option,
+    names_option,
+    noise_options,
+    source_argument,
+    table,
+    tracked,
+    weighed,
+)
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -35,6 +44,13 @@ class Request:
     package: str
     layout: str
     groups: tuple[str, ...] = ()
+    noise: str | None = None
+    loss: str | None = None
+    mode: str | None = None
+
+    def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
+        """The factors that are asked for, of ``source``, whitened and robust as asked for."""
+        return weighed(chosen(source, self.names, self.groups), self.noise, self.loss, self.mode)
 
     def command(self, source: str | None, directory: str) -> str:
         """The command line that repeats the request; options with their default value are left out."""
@@ -45,6 +61,8 @@ class Request:
         words += ["-o", directory]
         words += [] if self.package == default_package(source, self.groups) else ["--package", self.package]
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
+        for option in ("noise", "loss", "mode"):
+            words += [f"--{option}", getattr(self, option)] if getattr(self, option) else []
         return shlex.join(words)
 
     @property
@@ -70,12 +88,13 @@ def requested(
     package: str | None,
     layout: str,
     groups: Sequence[str] = (),
+    *weighting: str | None,
 ) -> Request:
-    """Fill in the defaults."""
+    """Fill in the defaults; ``weighting`` is noise, loss and mode."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
     called = package or default_package(source, groups)
     unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
-    return Request(source, unique[0], wanted, called, layout, unique[1])
+    return Request(source, unique[0], wanted, called, layout, unique[1], *weighting)
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -123,6 +142,7 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
     "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
     help="col adds C functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
+@noise_options
 def generate(
     source: str | None,
     names: tuple[str, ...],
@@ -131,12 +151,15 @@ def generate(
     output: str,
     package: str | None,
     layout: str,
+    noise: str | None,
+    loss: str | None,
+    mode: str | None,
 ) -> None:
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout, groups)
-    functions = chosen(source, request.names, groups)
+    request = requested(source, names, targets, package, layout, groups, noise, loss, mode)
+    functions = request.chosen(source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]

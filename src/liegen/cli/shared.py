@@ -25,6 +25,37 @@ groups_option = click.option(
 )  # fmt: skip
 
 
+def noise_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--noise``, ``--loss`` and ``--mode`` of a command; their names are checked where they are used."""
+    options = (
+        click.option("--noise", metavar="MODEL", help="Whiten with sqrt_info: full, diagonal or isotropic."),
+        click.option("--loss", metavar="LOSS", help="Robust loss: huber, cauchy, tukey, barron, ..."),
+        click.option("--mode", metavar="MODE", help="How the loss is applied: irls (default) or triggs."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def weighed(
+    functions: Sequence[AnyFunction], noise: str | None, loss: str | None, mode: str | None
+) -> tuple[AnyFunction, ...]:
+    """The factors with noise and loss; those of before where none is given."""
+    if noise is loss is mode is None:
+        return tuple(functions)
+    return tuple(f.whitened(noise, loss, mode) for f in functions)
+
+
+def weighed_by_name(
+    source: str | None, groups: Sequence[str], noise: str | None, loss: str | None, mode: str | None
+) -> dict[str, AnyFunction]:
+    """All factors of a source with noise and loss; other processes load them again with it."""
+    from liegen.sources import load
+
+    factors = [f for f in load(source, groups) if f.is_factor or noise is loss is mode is None]
+    return {f.name: f for f in weighed(factors, noise, loss, mode)}
+
+
 def chosen(source: str | None, names: Sequence[str], groups: Sequence[str] = ()) -> tuple[AnyFunction, ...]:
     """The factors, or the functions of groups, that a command is about."""
     from liegen.sources import load, select

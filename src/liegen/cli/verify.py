@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, count, groups_option, names_option, progress, source_argument, table
+from .shared import (
+    chosen,
+    count,
+    groups_option,
+    names_option,
+    noise_options,
+    progress,
+    source_argument,
+    table,
+    weighed,
+    weighed_by_name,
+)
 
 if TYPE_CHECKING:
     from liegen.verify import Check, FactorReport, Report
@@ -28,6 +39,7 @@ LISTED = 6
 @source_argument
 @names_option
 @groups_option
+@noise_options
 @click.option(
     "--samples", type=click.IntRange(min=1), help="Samples a factor; every special case by default."
 )
@@ -37,16 +49,18 @@ def verify(
     source: str | None,
     names: tuple[str, ...],
     groups: tuple[str, ...],
+    noise: str | None,
+    loss: str | None,
+    mode: str | None,
     samples: int | None,
     seed: int,
     as_json: bool,
 ) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
-    from liegen.sources import by_name
     from liegen.verify import verify as run
     from liegen.verify.run import SAMPLES
 
-    functions = chosen(source, names, groups)
+    functions = weighed(chosen(source, names, groups), noise, loss, mode)
     started = time.monotonic()
     with _shown(len(functions)) as told:
         report = run(
@@ -54,7 +68,7 @@ def verify(
             samples=samples or SAMPLES,
             seed=seed,
             progress=told,
-            reload=partial(by_name, source, groups),
+            reload=partial(weighed_by_name, source, groups, noise, loss, mode),
         )
     if as_json:
         click.echo(report.to_json(), nl=False)
@@ -126,6 +140,8 @@ def _remarks(factor: FactorReport) -> Iterable[str]:
                 f"\n{factor.factor}: {check.name} failed: {check.worst:.3g} {check.unit} where "
                 f"{check.bound:.3g} is allowed, at: {check.where or 'no sample'}{note}"
             )
+        elif check.name == "Jacobian" and not check.checked:
+            yield f"{factor.factor}: Jacobian, differences, Taylor: {check.note}"
         elif check.note not in ("", EVERYWHERE) and check.checked:
             yield f"{factor.factor}: {check.name}: {check.note}"
 

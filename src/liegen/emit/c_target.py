@@ -152,7 +152,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
         functions.append(_function(kernel, kernel.jacobians, options, name, False))
     if options.layout == "col":
         functions.append(_function(kernel, kernel.jacobians, options, f"{name}_cm", True))
-    shapes = [f"{a.name}[{a.size}]: {argument_text(a)}" for a in kernel.arguments]
+    shapes = [f"{a.name}[{' * '.join(map(str, a.shape))}]: {argument_text(a)}" for a in kernel.arguments]
     shapes += [f"{o.name}[{' * '.join(map(str, o.shape))}]: {storage_text(o)}" for o in kernel.outputs]
     shapes += [f"{j}[{m} * {n}]: {m} x {n}, {meaning}" for j, (m, n), meaning in jacobian_texts(kernel)]
     return {

@@ -22,6 +22,8 @@ def storage_text(item: Argument | Output) -> str:
     """``SE3 (qx, qy, qz, qw, x, y, z)``; the manifold alone where it stores one number, or is of matrices."""
     if isinstance(item, Output) and len(item.shape) > 1:
         return item.manifold
+    if isinstance(item, Argument) and item.meaning:
+        return item.meaning
     return f"{item.manifold} ({', '.join(item.storage)})" if item.size > 1 else item.manifold
 
 
@@ -57,7 +59,7 @@ def doc_lines(kernel: Kernel) -> list[str]:
 
 def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     """Formula, frames, conventions, shapes, operation counts, how to regenerate, licence."""
-    shapes = [f"{a.name}: {a.size}, {argument_text(a)}" for a in kernel.arguments]
+    shapes = [f"{a.name}: {' x '.join(map(str, a.shape))}, {argument_text(a)}" for a in kernel.arguments]
     shapes += [
         f"{o.name}: {f'{o.size}, ' if len(o.shape) == 1 else ''}{storage_text(o)}" for o in kernel.outputs
     ]
@@ -66,6 +68,7 @@ def kernel_header(kernel: Kernel, options: Options) -> tuple[str, ...]:
     lines = [kernel.name, "", *doc_lines(kernel)]
     lines += _section("Formula", kernel.formula)
     lines += _section("Jacobians", kernel.jacobian_formulas)
+    lines += _section("Noise and loss", kernel.noise)
     lines += _section("Frames", kernel.frames)
     lines += _section("Conventions", kernel.conventions)
     lines += _section("Shapes", shapes)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import keyword
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from liegen.kernel import Argument, Kernel
 from liegen.program import Port, Program
 
 from .header import argument_text, doc_lines, jacobian_texts, kernel_header, storage_text
-from .printer import Listing, print_program
+from .printer import Listing, Load, print_program
 from .syntax import COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
 from .target import Options, Sheet, Target, scalar_names, words
 
@@ -78,10 +78,27 @@ def _loads(listing: Listing, arguments: Sequence[Argument]) -> tuple[str, ...]:
     for argument in arguments:
         mine = [load for load in listing.loads if load.port == argument.name]
         if mine:
+            if len(argument.shape) > 1:
+                lines += _matrix_loads(mine, argument)
+                continue
             rows = [f"{argument.name}[{load.index}]" for load in mine]
             source = argument.name if len(mine) == argument.size > 1 else ", ".join(rows)
             lines.append(f"{', '.join(load.name for load in mine)} = {source}")
     return tuple(lines)
+
+
+def _matrix_loads(loads: Sequence[Load], argument: Argument) -> Iterator[str]:
+    """A line for each run of entries in a row of a matrix."""
+    columns = argument.shape[-1]
+    for row in range(argument.shape[0]):
+        mine = [load for load in loads if load.index // columns == row]
+        if not mine:
+            continue
+        first, last = mine[0].index, mine[-1].index
+        whole = last - first == len(mine) - 1 > 0
+        picked = ", ".join(f"{argument.name}[{load.index}]" for load in mine)
+        source = f"{argument.name}[{first}:{last + 1}]" if whole else picked
+        yield f"{', '.join(load.name for load in mine)} = {source}"
 
 
 def _function(name: str, kernel: Kernel, program: Program) -> Function:
@@ -111,13 +128,23 @@ def _broken(opening: str, items: Sequence[str], closing: str, *, comma: bool = F
 
 
 def _shape(port: Port) -> str:
-    return f"(..., {', '.join(map(str, port.shape))})"
+    return _array(port.shape)
+
+
+def _array(shape: Sequence[int]) -> str:
+    return f"(..., {', '.join(map(str, shape))})"
+
+
+def _argument(kernel: Kernel, a: Argument) -> str:
+    """What a public function hands to ``evaluate``: name, array and number of components."""
+    flat = f'flat("{kernel.name}", "{a.name}", {a.name}, {a.shape})' if len(a.shape) > 1 else a.name
+    return f'("{a.name}", {flat}, {a.size})'
 
 
 def _doc(kernel: Kernel, program: Program, meanings: Mapping[str, str], tail: str) -> tuple[str, ...]:
     lines = doc_lines(kernel)
     lines = [*lines, *tail.splitlines(), "", "Arguments:"]
-    lines += [f"    {a.name}: (..., {a.size}) {argument_text(a)}" for a in kernel.arguments]
+    lines += [f"    {a.name}: {_array(a.shape)} {argument_text(a)}" for a in kernel.arguments]
     lines += ["", "Returns:"]
     lines += [f"    {port.name}: {_shape(port)} {meanings[port.name]}" for port in program.outputs]
     if program.requirements:
@@ -137,7 +164,7 @@ def _interface(
     call = f'evaluate({private}, "{name}", values, shapes)'
     return Interface(
         signature=_broken(f"def {name}(", typed, f") -> {record or 'Array'}:"),
-        arguments=tuple(f'("{a.name}", {a.name}, {a.size})' for a in kernel.arguments),
+        arguments=tuple(_argument(kernel, a) for a in kernel.arguments),
         result=f"{shapes.lstrip()}\n    return {f'{record}(*{call})' if record else f'{call}[0]'}",
         record=record,
         record_doc=f"What :func:`{name}` returns.",
@@ -165,6 +192,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
         "factor": kernel.name,
         "differentiated": bool(kernel.variables),
         "uses_numpy": any("np." in line for line in lines) or any(f.invalid for f in functions),
+        "matrices": any(len(a.shape) > 1 for a in kernel.arguments),
         "exports": sorted(public_names(kernel)),
         "functions": tuple(functions),
         "interfaces": tuple(interfaces),
@@ -176,7 +204,7 @@ TARGET = Target(
     printer=printed,
     public=public_names,
     keywords={"Python": frozenset(keyword.kwlist)},
-    reserved=words("np npt NamedTuple Array annotations evaluate values shapes invalid"),
+    reserved=words("np npt NamedTuple Array annotations evaluate flat values shapes invalid"),
     files=words("support"),
     factor_sheets=(Sheet("numpy/factor.py.j2", "{package}/_{factor}.py"),),
     package_sheets=(

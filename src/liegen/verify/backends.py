@@ -111,8 +111,10 @@ def numpy_backends(kernel: Kernel, folder: Path) -> tuple[Backend, ...]:
 
 
 def _called(function: Any, kernel: Kernel, arguments: Arrays) -> Any:
-    positional = [arguments[a.name] for a in kernel.positional]
-    return function(*positional, **{a.name: arguments[a.name] for a in kernel.keywords})
+    arrays = {a.name: (arguments[a.name], a.shape) for a in kernel.arguments}
+    shaped = {name: array.reshape(*array.shape[:-1], *shape) for name, (array, shape) in arrays.items()}
+    positional = [shaped[a.name] for a in kernel.positional]
+    return function(*positional, **{a.name: shaped[a.name] for a in kernel.keywords})
 
 
 def load_package(folder: Path) -> Any:

@@ -93,8 +93,20 @@ def draw_one(function: AnyFunction, draw: Draw, case: Case) -> Sample:
 
 
 def _sampler(function: AnyFunction) -> Sampler:
-    manifolds: dict[str, Any] = {p.name: p.manifold for p in function.graph.parameters}
-    return function.sampler or default_sampler(manifolds)
+    manifolds: dict[str, Any] = {p.name: p.manifold for p in function.plain.parameters}
+    own = function.sampler or default_sampler(manifolds)
+    weighting = function.weighting
+    if weighting is None:
+        return own
+    m = function.plain.outputs[0][1].manifold.form.dim
+    classes: dict[str, Any] = {p.name: p.manifold for p in function.graph.parameters}
+
+    def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
+        values = dict(own(draw, case))
+        drawn = weighting.draw(draw.generator, m)
+        return {**values, **{name: classes[name].from_storage(x) for name, x in drawn.items()}}
+
+    return sample
 
 
 def stored(function: AnyFunction, values: Mapping[str, Value]) -> dict[str, tuple[float, ...]]:

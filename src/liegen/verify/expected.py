@@ -70,7 +70,8 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
     branches = [_both_branches(graph, s) for s in samples]
     rough = np.array([conditioned or s.conditioned for s in samples])
     allowed = rounding(function.kernel.jacobians, batch(tuple(samples))) if rough.any() else {}
-    inputs = np.array([max(abs(x) for v in s.values.values() for x in v) for s in samples])
+    # the shape of a loss may be infinite
+    inputs = np.array([max(abs(x) for v in s.values.values() for x in v if np.isfinite(x)) for s in samples])
     blocks: list[Block] = []
     for name in branches[0][0] if branches else ():
         is_value = name in dict(graph.outputs)

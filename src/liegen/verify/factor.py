@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from .differences import differences
 from .domain import domain
 from .draws import AnyFunction, Samples, batch, draw_samples
 from .expected import Expected, compare, expect
+from .gradient import gradient, not_applicable
 from .in_place import in_place
 from .report import Check, FactorReport
 from .taylor import taylor
@@ -36,10 +38,25 @@ def check_factor(
         return FactorReport(function.name, (_nothing(function, drawn),))
     computed = backends(function.kernel, place)
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
+    weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
+    if weighting:
+        expected = replace(expected, blocks=tuple(b for b in expected.blocks if b.is_value))
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
+    if weighting:
+        branches = compare(expected, results[TAKEN])[0].branch.tolist()
+        value, _ = accuracy(expected, results, drawn.refused)
+        checks = (
+            value,
+            gradient(function, weighting, drawn.inside, results, branches),
+            agreement(expected, results | singles),
+            domain(function, drawn, computed, seed),
+            *(not_applicable(name, weighting.mode.name) for name in ("Jacobian", "differences", "Taylor")),
+            _compiled(place),
+        )
+        return FactorReport(function.name, checks)
     return FactorReport(
         function.name,
         (

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from . import cameras, groups, tangent, vectors
+from . import cameras, groups, tangent, vectors, weights
 from .calls import Call, Rule
 from .logarithms import Branch
 from .matrix import Element, Vector, mp
@@ -24,6 +24,7 @@ OPERATIONS: Mapping[str, Rule] = {
     **tangent.OPERATIONS,
     **vectors.OPERATIONS,
     **cameras.OPERATIONS,
+    **weights.OPERATIONS,
 }
 Sample = Mapping[str, Sequence[float]]
 

@@ -1,0 +1,68 @@
+"""How the noise of a residual is given: one entry per model, adding a model adds one entry."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.algebra.linear import Matrix, Vector, diagonal
+
+#: The keyword that every model adds.
+KEYWORD = "sqrt_info"
+
+
+@dataclass(frozen=True)
+class Noise:
+    """A model of the noise of a residual with m entries.
+
+    ``shape(m)`` is that of ``sqrt_info``; ``matrix(stored, m)`` makes of its numbers, row-major, the upper
+    triangular S with S^T S = covariance^-1, zeros as structure. ``draw`` gives samples for verification.
+    """
+
+    name: str
+    shape: Callable[[int], tuple[int, ...]]
+    matrix: Callable[[Vector, int], Matrix]
+    meaning: str
+    draw: Callable[[np.random.Generator, int], NDArray[np.float64]]
+
+
+def _upper(stored: Vector, m: int) -> Matrix:
+    return tuple(tuple(stored[i * m + j] if j >= i else 0 for j in range(m)) for i in range(m))
+
+
+def _draw_full(generator: np.random.Generator, m: int) -> NDArray[np.float64]:
+    """Numbers below the diagonal too: code that reads them is wrong."""
+    S = generator.normal(size=(m, m))
+    S[np.diag_indices(m)] = generator.uniform(0.5, 2.0, m)
+    return S
+
+
+NOISES: Mapping[str, Noise] = {
+    noise.name: noise
+    for noise in (
+        Noise(
+            "full",
+            lambda m: (m, m),
+            _upper,
+            "upper triangular S, S^T S = covariance^-1; below the diagonal it is not read",
+            _draw_full,
+        ),
+        Noise(
+            "diagonal",
+            lambda m: (m,),
+            lambda stored, m: diagonal(stored),
+            "1 / standard deviation of each entry of the residual",
+            lambda generator, m: generator.uniform(0.5, 2.0, m),
+        ),
+        Noise(
+            "isotropic",
+            lambda m: (1,),
+            lambda stored, m: diagonal([stored[0]] * m),
+            "1 / standard deviation of every entry of the residual",
+            lambda generator, m: generator.uniform(0.5, 2.0, 1),
+        ),
+    )
+}

@@ -1,0 +1,204 @@
+"""``Weighting``: a noise model, a loss and its mode, applied to a residual and its Jacobians."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from math import prod
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.algebra import Scalar, lt, select, sqrt
+from liegen.algebra.linear import (
+    Matrix,
+    Vector,
+    dot,
+    eye,
+    is_structural,
+    matmul,
+    matscale,
+    matvec,
+    scale,
+    sub,
+)
+from liegen.errors import DefinitionError
+
+from .losses import LOSSES, Loss, known
+from .models import KEYWORD, NOISES, Noise
+
+K = TypeVar("K")
+Blocks = Mapping[K, Matrix]
+#: Triggs' 1 - alpha is not allowed below this; Ceres: "we limit alpha <= 1 - eps for some small eps".
+GAP = 2.0**-6
+#: Length of the scale's samples, in standard deviations.
+_SCALES = (0.5, 5.0)
+
+
+@dataclass(frozen=True)
+class Weight:
+    """A keyword that a weighting adds: its array's shape and what it means."""
+
+    name: str
+    shape: tuple[int, ...]
+    meaning: str
+
+    @property
+    def size(self) -> int:
+        """Number of stored scalars."""
+        return prod(self.shape)
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """The residual, and what makes the Jacobians of those of u: root (I - ratio u u^T)."""
+
+    root: Scalar
+    residual: Vector
+    ratio: Scalar
+
+
+@dataclass(frozen=True)
+class Mode:
+    """How a loss becomes part of least squares.
+
+    ``formula`` has the residual, the Jacobian, and what they use, as text.
+    """
+
+    name: str
+    formula: tuple[str, str, str]
+    weigh: Callable[[Loss, Sequence[Scalar], Vector], Weighed]
+
+
+def _reweighted(loss: Loss, parameters: Sequence[Scalar], u: Vector) -> Weighed:
+    _, root, _ = loss.weights(dot(u, u), parameters)
+    return Weighed(root, scale(root, u), 0)
+
+
+def _corrected(loss: Loss, parameters: Sequence[Scalar], u: Vector) -> Weighed:
+    """Triggs et al. (1999), eq. 10 and 11: alpha = 1 - sqrt(D), D = 1 + 2 s rho''/rho' = 1 - x bend."""
+    s, k = dot(u, u), parameters[-1]
+    x, root, bend = loss.weights(s, parameters)
+    D = 1.0 - x * bend
+    definite = lt(GAP * GAP, D)
+    gap = sqrt(select(definite, D, GAP * GAP))
+    # alpha / s, without 0/0 at s = 0: there D is 1
+    ratio = select(definite, bend / k / k / (1.0 + gap), (1.0 - GAP) / select(definite, 1.0, s))
+    return Weighed(root, scale(root / gap, u), ratio)
+
+
+def _along(u: Vector, ratio: Scalar, J: Matrix) -> Matrix:
+    """(I - ratio u u^T) J."""
+    if is_structural(ratio):
+        return J
+    (row,) = matmul((u,), J)
+    moved = scale(ratio, row)
+    return tuple(sub(own, scale(x, moved)) for own, x in zip(J, u, strict=True))
+
+
+MODES: Mapping[str, Mode] = {
+    mode.name: mode
+    for mode in (
+        Mode("irls", ("sqrt(w) u", "sqrt(w) {0}", "w = rho'(s)"), _reweighted),
+        Mode(
+            "triggs",
+            (
+                "sqrt(w) / (1 - alpha) u",
+                "sqrt(w) (I - alpha u u^T / s) {0}",
+                "w = rho'(s), alpha = 1 - sqrt(1 + 2 s rho''(s) / w), at most 1 - 1/64",
+            ),
+            _corrected,
+        ),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Weighting:
+    """What ``noise=``, ``loss=`` and ``mode=`` say; at least one of noise and loss is there."""
+
+    noise: Noise | None
+    loss: Loss | None
+    mode: Mode
+
+    def weights(self, m: int) -> tuple[Weight, ...]:
+        """The keywords that it adds to a factor with m residuals."""
+        own = (Weight(KEYWORD, self.noise.shape(m), self.noise.meaning),) if self.noise else ()
+        loss = self.loss
+        return own + tuple(
+            Weight(n, (1,), f"{'scale' if loss and n == loss.scale else 'shape'} of the loss")
+            for n in (loss.parameters if loss else ())
+        )
+
+    def parameters(self, given: Mapping[str, Vector]) -> tuple[Scalar, ...]:
+        """The loss's parameters in order."""
+        return tuple(given[name][0] for name in (self.loss.parameters if self.loss else ()))
+
+    def apply(
+        self, given: Mapping[str, Vector], r: Vector, blocks: Blocks[K]
+    ) -> tuple[Vector, dict[K, Matrix]]:
+        """The residual and its Jacobians, whitened and weighed. ``given`` holds the keywords' numbers."""
+        m = len(r)
+        S = self.noise.matrix(given[KEYWORD], m) if self.noise else eye(m)
+        u = matvec(S, r)
+        if not self.loss:
+            return u, {key: matmul(S, J) for key, J in blocks.items()}
+        weighed = self.mode.weigh(self.loss, self.parameters(given), u)
+        # the root goes into S, which has fewer entries than the Jacobians
+        scaled = matscale(weighed.root, S)
+        return weighed.residual, {
+            key: _along(u, weighed.ratio, matmul(scaled, J)) for key, J in blocks.items()
+        }
+
+    def cost(self, given: Mapping[str, Vector], r: Vector) -> Scalar:
+        """1/2 rho(|S r|^2)."""
+        none: dict[str, Matrix] = {}
+        u, _ = Weighting(self.noise, None, self.mode).apply(given, r, none)
+        s = dot(u, u)
+        return 0.5 * (self.loss.rho(s, *self.parameters(given)) if self.loss else s)
+
+    def lines(self, residual: str, variables: Sequence[str], frame: str | None) -> tuple[str, ...]:
+        """What is computed, for headers and ``explain``; ``residual`` names the unwhitened one."""
+        u = f"{KEYWORD} {residual}" if self.noise else residual
+        found: list[str] = []
+        if self.noise:
+            place = f", given in {frame}" if frame else ", in the residual's own units"
+            found.append(f"noise: {self.noise.name}; {KEYWORD}: {self.noise.meaning}{place}")
+        if not self.loss:
+            return (*found, f"res = {u}", *(f"res_D_{v} = {KEYWORD} {residual}_D_{v}" for v in variables))
+        value, jacobian, where = self.mode.formula
+        slopes = [f"{KEYWORD} {residual}_D_{v}" if self.noise else f"{residual}_D_{v}" for v in variables]
+        return (
+            *found,
+            f"loss: {self.loss.name}, rho(s) = {self.loss.formula}; the cost is rho(s) / 2",
+            f"mode: {self.mode.name}; res^T res_D_{variables[0]} is the exact gradient of the cost",
+            f"u = {u}, s = |u|^2, {where}",
+            f"res = {value}",
+            *(f"res_D_{v} = {jacobian.format(J)}" for v, J in zip(variables, slopes, strict=True)),
+        )
+
+    def draw(self, generator: np.random.Generator, m: int) -> dict[str, NDArray[np.float64]]:
+        """Numbers of the keywords for one sample of verification."""
+        values = {KEYWORD: self.noise.draw(generator, m).ravel()} if self.noise else {}
+        if self.loss:
+            row = self.loss.shapes[int(generator.integers(len(self.loss.shapes)))]
+            values |= {n: np.array([x]) for n, x in zip(self.loss.shape, row, strict=True)}
+            values[self.loss.scale] = generator.uniform(*_SCALES, 1)
+        return values
+
+
+def weighting(noise: str | None, loss: str | None, mode: str | None, where: str) -> Weighting | None:
+    """Read the names; None where neither noise nor loss is asked for.
+
+    Raises DefinitionError for unknown names, at ``where``.
+    """
+    asked = (("noise", noise, NOISES), ("loss", loss, LOSSES), ("mode", mode, MODES))
+    complaints = [known(what, name, table) for what, name, table in asked if name is not None]
+    if any(complaints):
+        raise DefinitionError(f"{where}: {'; '.join(filter(None, complaints))}")
+    if mode is not None and loss is None:
+        raise DefinitionError(f"{where}: mode={mode!r} is one of a loss; give loss= too")
+    if noise is None and loss is None:
+        return None
+    return Weighting(NOISES[noise] if noise else None, LOSSES[loss] if loss else None, MODES[mode or "irls"])

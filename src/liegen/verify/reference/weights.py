@@ -1,0 +1,89 @@
+"""Whitened residuals, robust losses and their cost, from textbook formulas of rho.
+
+Slopes and curvatures of rho are central differences of it; nothing of ``liegen.noise`` is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from .calls import Call, Rule
+from .matrix import Number, Vector, dot, matvec, mp, scale
+
+#: 1 - alpha of Triggs' correction is not allowed below this.
+GAP = 64
+
+
+def _barron(s: Number, alpha: Number, c: Number) -> Number:
+    """Barron (2019), eq. 13, times 2 c^2."""
+    x = s / c**2
+    if alpha == 2:
+        return s
+    if alpha == 0:
+        return 2 * c**2 * mp.log(x / 2 + 1)
+    if alpha == -mp.inf:
+        return 2 * c**2 * (1 - mp.exp(-x / 2))
+    b = abs(alpha - 2)
+    return 2 * c**2 * b / alpha * ((x / b + 1) ** (alpha / 2) - 1)
+
+
+_Rho = Callable[[Number, Number], Number] | Callable[[Number, Number, Number], Number]
+#: rho(s, parameters in order).
+RHO: Mapping[str, _Rho] = {
+    "huber": lambda s, k: s if s <= k**2 else 2 * k * mp.sqrt(s) - k**2,
+    "pseudo-huber": lambda s, k: 2 * k**2 * (mp.sqrt(1 + s / k**2) - 1),
+    "cauchy": lambda s, c: c**2 * mp.log(1 + s / c**2),
+    "tukey": lambda s, c: (1 - (1 - s / c**2) ** 3) * c**2 / 3 if s < c**2 else c**2 / 3,
+    "geman-mcclure": lambda s, c: s * c**2 / (c**2 + s),
+    "welsch": lambda s, c: c**2 * (1 - mp.exp(-s / c**2)),
+    "barron": _barron,
+}
+
+
+def _white(noise: str, r: Vector, stored: Vector) -> Vector:
+    """S r; below the diagonal the numbers do not count."""
+    if noise == "full":
+        m = len(r)
+        upper = tuple(tuple(stored[i * m + j] if j >= i else mp.zero for j in range(m)) for i in range(m))
+        return matvec(upper, r)
+    scales = stored if noise == "diagonal" else stored * len(r)
+    return tuple(k * x for k, x in zip(scales, r, strict=True))
+
+
+def _parts(call: Call) -> tuple[Vector, Callable[[Number], Number] | None, Number]:
+    """u = S r, rho as a function of s, and the square of the loss's scale."""
+    noise, loss, _ = call.operation.parameters
+    r, *rest = call.values
+    u = _white(noise, r, rest.pop(0)) if noise else r
+    numbers = [x for (x,) in rest]
+    if not loss:
+        return u, None, mp.one
+    rho: Any = RHO[loss]
+    return u, lambda s: rho(s, *numbers), numbers[-1] ** 2
+
+
+def _cost(call: Call) -> Vector:
+    u, rho, _ = _parts(call)
+    s = dot(u, u)
+    return ((rho(s) if rho else s) / 2,)
+
+
+def _weighted(call: Call) -> Vector:
+    u, rho, size = _parts(call)
+    if rho is None:
+        return u
+    s = dot(u, u)
+    h = (s + size) * mp.mpf(10) ** -25
+    forth, here, back = rho(s + h), rho(s), rho(s - h)
+    slope, curvature = (forth - back) / (2 * h), (forth - 2 * here + back) / h**2
+    # flat to all digits
+    root = mp.sqrt(slope) if slope > mp.mpf(10) ** -40 else mp.zero
+    if call.operation.parameters[2] == "irls" or not root:
+        return scale(root, u)
+    definite = mp.mpf(1) + 2 * s * curvature / slope
+    gap = max(mp.sqrt(max(definite, mp.zero)), mp.one / GAP)
+    return scale(root / gap, u)
+
+
+OPERATIONS: Mapping[str, Rule] = {"weighted": _weighted, "cost": _cost}
