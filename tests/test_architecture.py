@@ -11,8 +11,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "algebra", "coefficients", "manifolds", "uncertainty", "trace", "differentiate", "program",
-    "kernel", "derive", "define", "samples", "library", "sources", "emit", "native", "verify", "bench",
+    "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
+    "program", "kernel", "derive", "define", "samples", "library", "sources", "emit", "native", "verify", "bench",
     "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
