@@ -12,8 +12,8 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
-    "program", "kernel", "derive", "define", "samples", "library", "sources", "emit", "native", "verify", "bench",
-    "explain", "cli",
+    "program", "kernel", "derive", "define", "samples", "library", "sources", "emit", "native", "verify",
+    "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")

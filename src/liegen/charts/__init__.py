@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .chart import Chart as Chart
 from .chart import Preset as Preset
-from .form_chart import FormChart as FormChart
+from .contract import FormChart as FormChart
 from .forms import form_chart as form_chart
 from .presets import GTSAM as GTSAM
 from .presets import PRESETS as PRESETS
