@@ -13,7 +13,7 @@ import numpy as np
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value, Vector
 from liegen.manifolds.node import called, here
-from liegen.trace import FrameReport, Graph, Outputs, Signature, inlined, signature, trace
+from liegen.trace import ChartLike, FrameReport, Graph, Outputs, Signature, in_charts, inlined, signature, trace
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -39,13 +39,14 @@ class Function(Generic[P, T]):
     is_factor: bool
     sampler: Sampler | None = None
     checked: bool = True  # whether frames are
+    chart: ChartLike | None = None  # None: not stated, GTSAM's
     graph: Graph = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         graph = trace(
             self.function, self.declared, self.name, self.doc, factor=self.is_factor, frames=self.checked
         )
-        object.__setattr__(self, "graph", graph)
+        object.__setattr__(self, "graph", in_charts(graph, self.chart))
 
     @cached_property
     def kernel(self) -> Kernel:
@@ -152,7 +153,21 @@ class Function(Generic[P, T]):
             self.is_factor,
             sample or self.sampler,
             self.checked,
+            self._chart_of({s.name for s in declared if s.variable and s.bound is None}),
         )
+
+    def _chart_of(self, variables: set[str]) -> ChartLike | None:
+        """The stated chart without what is no variable any more."""
+        if not isinstance(self.chart, Mapping):
+            return self.chart
+        return {name: chart for name, chart in self.chart.items() if name in variables}
+
+    def in_chart(self, chart: ChartLike | None) -> Function[P, T]:
+        """The same formula in a chart, by name or as a ``liegen.Chart``; a chart that it states itself stays.
+
+        Raises DefinitionError for a chart that does not exist.
+        """
+        return self if chart is None or self.chart is not None else replace(self, chart=chart)
 
     def _known(self, names: Any) -> None:
         possible = [s.name for s in self.declared if s.bound is None]
@@ -167,36 +182,57 @@ class Function(Generic[P, T]):
 def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
 @overload
 def factor(
-    *, sample: Sampler | None = None, frames: bool = True
+    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
 ) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
-def factor(function: Any = None, /, *, sample: Sampler | None = None, frames: bool = True) -> Any:
+def factor(
+    function: Any = None,
+    /,
+    *,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+) -> Any:
     """Make a factor of a function that returns a residual vector.
 
     Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
     ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
-    not declare frames.
+    not declare frames. ``chart`` is that of ``local`` and ``retract`` and of the Jacobians' columns: the name
+    of a preset (``"sophus"``) or a ``liegen.Chart``; or charts of the columns of single variables,
+    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3.
     """
-    return _decorated(function, sample, is_factor=True, frames=frames)
+    return _decorated(function, sample, is_factor=True, frames=frames, chart=chart)
 
 
 @overload
 def function(function: Callable[P, S], /) -> Function[P, S]: ...
 @overload
 def function(
-    *, sample: Sampler | None = None, frames: bool = True
+    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
 ) -> Callable[[Callable[P, S]], Function[P, S]]: ...
-def function(function: Any = None, /, *, sample: Sampler | None = None, frames: bool = True) -> Any:
-    """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``."""
-    return _decorated(function, sample, is_factor=False, frames=frames)
+def function(
+    function: Any = None,
+    /,
+    *,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+) -> Any:
+    """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``.
+
+    ``chart`` as in :func:`factor`; it is that of the Jacobians' rows too.
+    """
+    return _decorated(function, sample, is_factor=False, frames=frames, chart=chart)
 
 
-def _decorated(function: Any, sample: Sampler | None, *, is_factor: bool, frames: bool) -> Callable[..., Any]:
+def _decorated(
+    function: Any, sample: Sampler | None, *, is_factor: bool, frames: bool, chart: ChartLike | None
+) -> Callable[..., Any]:
     if function is None:
-        return partial(_decorated, sample=sample, is_factor=is_factor, frames=frames)
+        return partial(_decorated, sample=sample, is_factor=is_factor, frames=frames, chart=chart)
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
-        function, signature(function), function.__name__, doc, is_factor, sample, frames
+        function, signature(function), function.__name__, doc, is_factor, sample, frames, chart=chart
     )
     return made

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from liegen.algebra.linear import Matrix
+from liegen.charts import GTSAM, form_chart
 from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.kernel import Argument, Kernel, Output, PassCount
 from liegen.manifolds import ManifoldForm, Vector
@@ -69,5 +70,12 @@ def _output(name: str, form: ManifoldForm) -> Output:
 def _conventions(graph: Graph) -> tuple[str, ...]:
     """A line for each manifold that occurs; vectors that are only results need none."""
     results = [node.manifold for _, node in graph.outputs if not issubclass(node.manifold, Vector)]
-    forms = [m.form for m in (*(p.manifold for p in graph.parameters), *results)]
-    return tuple({form.name: form.note for form in forms}.values())
+    used = [(p.manifold.form, p.chart) for p in graph.parameters]
+    used += [(m.form, graph.chart) for m in results]
+    used += [
+        (node.operands[0].manifold.form, graph.chart)
+        for node in graph.nodes()
+        if graph.chart is not GTSAM and node.operation.name in ("local", "retract")
+    ]
+    charts = ((form, form_chart(form, preset)) for form, preset in used)
+    return tuple(dict.fromkeys(form.note if chart is None else chart.note for form, chart in charts))

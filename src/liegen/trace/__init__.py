@@ -14,6 +14,8 @@ from .graph import Domain as Domain
 from .graph import Graph as Graph
 from .graph import Parameter as Parameter
 from .graph import topological as topological
+from .in_charts import ChartLike as ChartLike
+from .in_charts import in_charts as in_charts
 from .jacobian_text import jacobian_formulas as jacobian_formulas
 from .tracer import Outputs as Outputs
 from .tracer import Signature as Signature

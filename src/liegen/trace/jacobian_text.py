@@ -8,10 +8,11 @@ of f by its second operand where there is no shorter name.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from string import Formatter
 
+from liegen.charts import form_chart
 from liegen.manifolds import SO2, Leaf, Node, Vector
 from liegen.manifolds.additive_form import AdditiveForm
 from liegen.manifolds.form import GroupForm
@@ -105,6 +106,8 @@ _LEGEND: Mapping[str, str] = {
     "diag(": "diag(v): diagonal matrix",
     " M": "M: the constant matrix of the formula",
     "D[": "D[f](a): derivative of f at a",
+    "Chart(": "Chart(x): column map of the chart of x, d Log(x^-1 x.retract(d))/dd at 0",
+    "Chart^-1(": "Chart^-1(x): inverse of the column map of the chart of x",
     "D1[": "D1[f](a, b): derivative of f by its first operand",
     "D2[": "D2[f](a, b): derivative of f by its second operand",
 }
@@ -123,6 +126,7 @@ def jacobian_formulas(graph: Graph) -> tuple[str, ...]:
     Values that several others use have lines of their own, so the text stays as short as the graph.
     """
     variables = {id(p.node): p.name for p in graph.parameters if p.variable}
+    charted = {p.name for p in graph.parameters if form_chart(p.manifold.form, p.chart)}
     active = _active(graph, variables)
     shared = named_values(graph)
     names, extra = _all_names(graph, active, shared)
@@ -132,13 +136,13 @@ def jacobian_formulas(graph: Graph) -> tuple[str, ...]:
     outputs = {id(node) for _, node in graph.outputs}
     derivatives: dict[int, dict[str, list[Term]]] = {}
     for node in active:
-        terms = _chain_rule(node, derivatives, refer, variables)
+        terms = _chain_rule(node, derivatives, refer, variables, charted)
         several = id(node) in shared or any(len(products) > 1 for products in terms.values())
         if several and id(node) in names and id(node) not in outputs:
             terms = dict(_own_lines(names[id(node)], terms, lines))
         derivatives[id(node)] = terms
     for name, node in graph.outputs:
-        terms = derivatives.get(id(node), {})
+        terms = _in_rows(node, name, derivatives.get(id(node), {}), graph)
         lines += [f"{name}_D_{v} = {_sum(terms.get(v, []))}" for v in variables.values()]
     return tuple(lines)
 
@@ -171,10 +175,12 @@ def _chain_rule(
     derivatives: Mapping[int, Mapping[str, list[Term]]],
     refer: Callable[[Node], str],
     variables: Mapping[int, str],
+    charted: Collection[str],
 ) -> dict[str, list[Term]]:
     """The derivative of a node by each variable, from those of its operands."""
     if id(node) in variables:
-        return {variables[id(node)]: [(1, ())]}
+        name = variables[id(node)]
+        return {name: [(1, (f"Chart({name})",) if name in charted else ())]}
     terms: dict[str, list[Term]] = {}
     fields = {str(k): refer(n) for k, n in enumerate(node.operands)} | {"r": refer(node)}
     for label, operand in zip(labels(node), node.operands, strict=True):
@@ -189,6 +195,8 @@ def labels(node: Node) -> Labels:
     name, operands = node.operation.name, node.operands
     if name == "take":
         return (f"I[{_positions(node.operation.parameters)}]",)
+    if node.operation.parameters and name in ("local", "retract"):  # in a chart that is not the group's own
+        return (f"D1[{name}]({{0}}, {{1}})", f"D2[{name}]({{0}}, {{1}})")
     if name == "stack":
         return tuple(_columns(node))
     first, dim = operands[0].manifold, node.manifold.form.dim
@@ -207,6 +215,15 @@ def labels(node: Node) -> Labels:
     if len(operands) == 1:
         return (f"D[{name}]({places})",)
     return tuple(f"D{k + 1}[{name}]({places})" for k in range(len(operands)))
+
+
+def _in_rows(
+    node: Node, name: str, terms: Mapping[str, list[Term]], graph: Graph
+) -> Mapping[str, list[Term]]:
+    """The rows of an output on a group in its chart."""
+    if form_chart(node.manifold.form, graph.chart) is None:
+        return terms
+    return {v: [(s, (f"Chart^-1({name})", *rest)) for s, rest in products] for v, products in terms.items()}
 
 
 def _slope(text: str, k: int, dims: list[int], dim: int) -> str:
