@@ -13,7 +13,16 @@ import numpy as np
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value, Vector
 from liegen.manifolds.node import called, here
-from liegen.trace import ChartLike, FrameReport, Graph, Outputs, Signature, in_charts, inlined, signature, trace
+from liegen.trace import (
+    ChartLike,
+    FrameReport,
+    Graph,
+    Outputs,
+    Signature,
+    inlined,
+    signature,
+    trace,
+)
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -44,9 +53,10 @@ class Function(Generic[P, T]):
 
     def __post_init__(self) -> None:
         graph = trace(
-            self.function, self.declared, self.name, self.doc, factor=self.is_factor, frames=self.checked
-        )
-        object.__setattr__(self, "graph", in_charts(graph, self.chart))
+            self.function, self.declared, self.name, self.doc,
+            factor=self.is_factor, frames=self.checked, chart=self.chart,
+        )  # fmt: skip
+        object.__setattr__(self, "graph", graph)
 
     @cached_property
     def kernel(self) -> Kernel:
@@ -72,7 +82,7 @@ class Function(Generic[P, T]):
             named = {s.name: complete[s.name] for s in self.declared if not s.positional}
             result: Any = self.function(*(complete[s.name] for s in self.declared if s.positional), **named)
             given = [(s, complete[s.name]) for s in self.declared]
-            inlined(self.name, here(), given, result, frames=self.checked)
+            inlined(self.name, here(), given, result, frames=self.checked, chart=self.chart)
             return result
         results = self.kernel.value.evaluate({name: v.coords for name, v in values.items()})
         typed = {name: node.manifold.holding(results[name]) for name, node in self.graph.outputs}

@@ -46,9 +46,9 @@ def load(source: str | None) -> tuple[AnyFunction, ...]:
     return tuple({id(f): f for f in functions.values()}.values())
 
 
-def by_name(source: str | None) -> dict[str, AnyFunction]:
-    """The same by name; other processes load a source again with it."""
-    return {f.name: f for f in load(source)}
+def by_name(source: str | None, chart: str | None = None) -> dict[str, AnyFunction]:
+    """The same by name, in a chart if one is given; other processes load a source again with it."""
+    return {f.name: f.in_chart(chart) for f in load(source)}
 
 
 def select(functions: Sequence[AnyFunction], names: Iterable[str]) -> tuple[AnyFunction, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,7 @@ def check(directory: str, source: str | None) -> None:
     for manifest in _manifests(folder):
         stated = str(manifest["options"]["regenerate"])
         request = _request(stated, folder, source)
-        files = rendered(request, chosen(request.source, request.names), stated)
+        files = rendered(request, chosen(request.source, request.names, request.chart), stated)
         report = check_tree(files, folder)
         for line in _lines(report, folder, len(files)):
             click.echo(line)
@@ -84,8 +85,8 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    request = requested(original, given["names"], given["targets"], given["package"], given["layout"])
-    return Request(place, request.names, request.targets, request.package, request.layout)
+    options = ("names", "targets", "package", "layout", "chart")
+    return replace(requested(original, *(given[name] for name in options)), source=place)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:

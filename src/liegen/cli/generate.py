@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, names_option, source_argument, table, tracked
+from .shared import chart_option, chosen, names_option, source_argument, table, tracked
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -34,6 +34,7 @@ class Request:
     targets: tuple[str, ...]
     package: str
     layout: str
+    chart: str | None = None
 
     def command(self, source: str | None, directory: str) -> str:
         """The command line that repeats the request; options with their default value are left out."""
@@ -43,6 +44,7 @@ class Request:
         words += ["-o", directory]
         words += [] if self.package == default_package(source) else ["--package", self.package]
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
+        words += ["--chart", self.chart] if self.chart else []
         return shlex.join(words)
 
     @property
@@ -62,11 +64,17 @@ def default_package(source: str | None) -> str:
 
 
 def requested(
-    source: str | None, names: Sequence[str], targets: Sequence[str], package: str | None, layout: str
+    source: str | None,
+    names: Sequence[str],
+    targets: Sequence[str],
+    package: str | None,
+    layout: str,
+    chart: str | None = None,
 ) -> Request:
     """Fill in the defaults."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
-    return Request(source, tuple(dict.fromkeys(names)), wanted, package or default_package(source), layout)
+    name = package or default_package(source)
+    return Request(source, tuple(dict.fromkeys(names)), wanted, name, layout, chart)
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -107,6 +115,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
     "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
     help="col adds C functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
+@chart_option
 def generate(
     source: str | None,
     names: tuple[str, ...],
@@ -114,12 +123,13 @@ def generate(
     output: str,
     package: str | None,
     layout: str,
+    chart: str | None,
 ) -> None:
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout)
-    functions = chosen(source, request.names)
+    request = requested(source, names, targets, package, layout, chart)
+    functions = chosen(source, request.names, chart)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]

@@ -19,11 +19,20 @@ names_option = click.option(
 )
 
 
-def chosen(source: str | None, names: Sequence[str]) -> tuple[AnyFunction, ...]:
-    """The factors that a command is about."""
+chart_option = click.option(
+    "--chart", metavar="PRESET", help="Chart of local, retract and the Jacobians' columns: gtsam (default), "
+    "gtsam-4.2, symforce, sophus, manif, ceres, g2o, ros. A factor that states its chart keeps it.",
+)  # fmt: skip
+
+
+def chosen(source: str | None, names: Sequence[str], chart: str | None = None) -> tuple[AnyFunction, ...]:
+    """The factors that a command is about. Raises DefinitionError for an unknown chart."""
+    from liegen.charts import preset
     from liegen.sources import load, select
 
-    return select(load(source), names)
+    if chart is not None:
+        preset(chart, "--chart")
+    return tuple(f.in_chart(chart) for f in select(load(source), names))
 
 
 def count(n: int, noun: str) -> str:

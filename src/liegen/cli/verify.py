@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, count, names_option, progress, source_argument, table
+from .shared import chart_option, chosen, count, names_option, progress, source_argument, table
 
 if TYPE_CHECKING:
     from liegen.verify import Check, FactorReport, Report
@@ -31,14 +31,22 @@ LISTED = 6
     "--samples", type=click.IntRange(min=1), help="Samples a factor; every special case by default."
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
+@chart_option
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def verify(source: str | None, names: tuple[str, ...], samples: int | None, seed: int, as_json: bool) -> None:
+def verify(
+    source: str | None,
+    names: tuple[str, ...],
+    samples: int | None,
+    seed: int,
+    chart: str | None,
+    as_json: bool,
+) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
     from liegen.sources import by_name
     from liegen.verify import verify as run
     from liegen.verify.run import SAMPLES
 
-    functions = chosen(source, names)
+    functions = chosen(source, names, chart)
     started = time.monotonic()
     with _shown(len(functions)) as told:
         report = run(
@@ -46,7 +54,7 @@ def verify(source: str | None, names: tuple[str, ...], samples: int | None, seed
             samples=samples or SAMPLES,
             seed=seed,
             progress=told,
-            reload=partial(by_name, source),
+            reload=partial(by_name, source, chart),
         )
     if as_json:
         click.echo(report.to_json(), nl=False)

@@ -78,7 +78,8 @@ def jacobians(
     inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun]
     products = eliminate(edges, inner, strategy)
     return {
-        (name, p.name): products.get((sources[v], sinks[name])) or zeros(node.manifold.form.dim, p.manifold.form.dim)
+        (name, p.name): products.get((sources[v], sinks[name]))
+        or zeros(node.manifold.form.dim, p.manifold.form.dim)
         for name, node in graph.outputs
         for v, p in variables.items()
     }

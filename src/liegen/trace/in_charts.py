@@ -28,8 +28,8 @@ def in_charts(graph: Graph, chart: ChartLike | None) -> Graph:
     if chart is None:
         return graph
     what = f"{graph.site}: {graph.name}"
+    common = common_chart(chart, what)
     single = not isinstance(chart, Mapping)
-    common = preset(chart, what) if single else GTSAM
     own = {} if single else {name: preset(c, f"{what}: chart of {name!r}") for name, c in chart.items()}
     variables = {p.name: p for p in graph.parameters if p.variable}
     for name in own:
@@ -42,6 +42,11 @@ def in_charts(graph: Graph, chart: ChartLike | None) -> Graph:
                        frames=_frames(graph.frames, parameters, common))  # fmt: skip
     except DefinitionError as error:
         raise DefinitionError(f"{what}: {error}") from None
+
+
+def common_chart(chart: ChartLike | None, what: str) -> Preset:
+    """The chart of ``local`` and ``retract``: GTSAM's where none, or only those of variables, are stated."""
+    return GTSAM if chart is None or isinstance(chart, Mapping) else preset(chart, what)
 
 
 def _refuse_other(name: str, variables: Mapping[str, Parameter], what: str) -> None:
@@ -66,7 +71,9 @@ def _rewritten(graph: Graph, chart: Preset) -> Graph:
     moved: dict[int, Node] = {}
     for node in graph.nodes():
         operation, operands = _operation(node, chart), tuple(moved[id(n)] for n in node.operands)
-        same = operation is node.operation and all(a is b for a, b in zip(operands, node.operands, strict=True))
+        same = operation is node.operation and all(
+            a is b for a, b in zip(operands, node.operands, strict=True)
+        )
         moved[id(node)] = node if same else Node(operation, operands, node.site)
     return replace(
         graph,
