@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from .charting import ChartLike as ChartLike
+from .charting import in_charts as in_charts
 from .formulas import formula as formula
 from .frame_check import check_frames as check_frames
 from .frame_names import Frames as Frames
@@ -14,8 +16,6 @@ from .graph import Domain as Domain
 from .graph import Graph as Graph
 from .graph import Parameter as Parameter
 from .graph import topological as topological
-from .in_charts import ChartLike as ChartLike
-from .in_charts import in_charts as in_charts
 from .jacobian_text import jacobian_formulas as jacobian_formulas
 from .tracer import Outputs as Outputs
 from .tracer import Signature as Signature

@@ -16,10 +16,10 @@ from liegen.errors import DefinitionError, LiegenError, Site
 from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
 
+from .charting import ChartLike, common_chart, in_charts
 from .frame_check import check_frames
 from .frame_names import Declared, Frames, declared
 from .graph import Call, Domain, Graph, Parameter, topological
-from .in_charts import ChartLike, common_chart, in_charts
 
 
 @dataclass(frozen=True)
