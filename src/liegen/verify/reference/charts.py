@@ -128,10 +128,10 @@ class _Poses:
         return (*w, *v) if self.first else (*v, *w)
 
 
-def space_in(manifold: type[Value], preset: Preset) -> Space:
-    """The reference's entry for a manifold, with retract and local of the preset's chart."""
+def space_in(manifold: type[Value], preset: Preset | None) -> Space:
+    """The reference's entry for a manifold, with retract and local of the preset's chart; None: GTSAM's."""
     space, name = space_of(manifold), manifold.form.name
-    if name not in _KINDS:
+    if preset is None or name not in _KINDS:
         return space
     kind, turn, move, first = _KINDS[name]
     chart = preset.chart(manifold.form)

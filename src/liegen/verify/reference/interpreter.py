@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from liegen.charts import GTSAM, Preset
-
 from . import cameras, groups, vectors
 from .calls import Call, Rule
 from .charts import space_in
@@ -16,6 +14,7 @@ from .matrix import Element, Vector, mp
 from .spaces import load, space_of
 
 if TYPE_CHECKING:
+    from liegen.charts import Preset
     from liegen.manifolds import Node, Value
     from liegen.trace import Graph
 
@@ -111,7 +110,7 @@ def holds(graph: Graph, sample: Sample) -> tuple[bool, ...]:
     return evaluate(graph, sample).holds
 
 
-def difference(manifold: type[Value], a: Element, b: Element, chart: Preset = GTSAM) -> Vector:
+def difference(manifold: type[Value], a: Element, b: Element, chart: Preset | None = None) -> Vector:
     """The tangent vector at ``a`` that leads to ``b``."""
     with mp.workdps(DIGITS):
         return space_in(manifold, chart).local(a, b, PRINCIPAL)
@@ -132,7 +131,7 @@ def to_coords(
 
 
 def retract(
-    manifold: type[Value], coords: Sequence[float], d: Sequence[float], chart: Preset = GTSAM
+    manifold: type[Value], coords: Sequence[float], d: Sequence[float], chart: Preset | None = None
 ) -> tuple[float, ...]:
     """``coords`` moved by the tangent vector ``d``, rounded to doubles; a quaternion keeps its side."""
     with mp.workdps(DIGITS):
@@ -142,7 +141,7 @@ def retract(
 
 
 def local(
-    manifold: type[Value], a: Sequence[float], b: Sequence[float], chart: Preset = GTSAM
+    manifold: type[Value], a: Sequence[float], b: Sequence[float], chart: Preset | None = None
 ) -> tuple[float, ...]:
     """The tangent vector at ``a`` that leads to ``b``, rounded to doubles."""
     with mp.workdps(DIGITS):
