@@ -85,6 +85,8 @@ def test_symforce(G):
 
 @pytest.mark.parametrize("G", [SO3, SE2, SE3], ids=lambda G: G.__name__)
 def test_sophus(G):
+    if np.__version__ >= "2":
+        pytest.skip("sophuspy 1.2 crashes with NumPy 2")
     sophus = library("sophuspy")
     C = {SO3: sophus.SO3, SE2: sophus.SE2, SE3: sophus.SE3}[G]
     check(
