@@ -11,9 +11,9 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "algebra", "coefficients", "manifolds", "uncertainty", "trace", "differentiate", "noise",
-    "program", "kernel", "derive", "define", "samples", "library", "modules", "sources", "emit", "native",
-    "verify", "foreign", "bench", "explain", "cli",
+    "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
+    "noise", "program", "kernel", "derive", "define", "samples", "library", "modules", "sources", "emit",
+    "native", "verify", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 if TYPE_CHECKING:
+    from .charts import Chart as Chart
     from .define import Function as Function
     from .define import factor as factor
     from .define import function as function
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
     from .trace import require as require
 
 _NAMES: dict[str, tuple[str, ...]] = {
+    ".charts": ("Chart",),
     ".define": ("Function", "factor", "function"),
     ".errors": ("DefinitionError", "LiegenError"),
     ".manifolds": (

@@ -15,7 +15,17 @@ from liegen.manifolds import Manifold, Value, Vector
 from liegen.manifolds.node import called, here
 from liegen.noise import Weighting, weighted_graph
 from liegen.noise import weighting as read_weighting
-from liegen.trace import FrameReport, Graph, Outputs, Signature, inlined, latex, signature, trace
+from liegen.trace import (
+    ChartLike,
+    FrameReport,
+    Graph,
+    Outputs,
+    Signature,
+    inlined,
+    latex,
+    signature,
+    trace,
+)
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
@@ -43,6 +53,7 @@ class Function(Generic[P, T]):
     is_factor: bool
     sampler: Sampler | None = None
     checked: bool = True  # whether frames are
+    chart: ChartLike | None = None  # None: not stated, GTSAM's
     in_place: bool = False
     weighting: Weighting | None = None
     plain: Graph = field(init=False, repr=False)
@@ -50,8 +61,9 @@ class Function(Generic[P, T]):
 
     def __post_init__(self) -> None:
         graph = trace(
-            self.function, self.declared, self.name, self.doc, factor=self.is_factor, frames=self.checked
-        )
+            self.function, self.declared, self.name, self.doc,
+            factor=self.is_factor, frames=self.checked, chart=self.chart,
+        )  # fmt: skip
         object.__setattr__(self, "plain", graph)
         weighted = weighted_graph(graph, self.weighting) if self.weighting else graph
         object.__setattr__(self, "graph", weighted)
@@ -85,7 +97,7 @@ class Function(Generic[P, T]):
             named = {s.name: complete[s.name] for s in self.declared if not s.positional}
             result: Any = self.function(*(complete[s.name] for s in self.declared if s.positional), **named)
             given = [(s, complete[s.name]) for s in self.declared]
-            inlined(self.name, here(), given, result, frames=self.checked)
+            inlined(self.name, here(), given, result, frames=self.checked, chart=self.chart)
             return result
         results = self.kernel.value.evaluate({name: v.coords for name, v in values.items()})
         typed = {name: node.manifold.holding(results[name]) for name, node in self.graph.outputs}
@@ -217,9 +229,23 @@ class Function(Generic[P, T]):
             self.is_factor,
             sample or self.sampler,
             self.checked,
+            self._chart_of({s.name for s in declared if s.variable and s.bound is None}),
             self.in_place,
             weighting or self.weighting,
         )
+
+    def _chart_of(self, variables: set[str]) -> ChartLike | None:
+        """The stated chart without what is no variable any more."""
+        if not isinstance(self.chart, Mapping):
+            return self.chart
+        return {name: chart for name, chart in self.chart.items() if name in variables}
+
+    def in_chart(self, chart: ChartLike | None) -> Function[P, T]:
+        """The same formula in a chart, by name or as a ``liegen.Chart``; a chart that it states itself stays.
+
+        Raises DefinitionError for a chart that does not exist.
+        """
+        return self if chart is None or self.chart is not None else replace(self, chart=chart)
 
     def _known(self, names: Any) -> None:
         possible = [s.name for s in self.declared if s.bound is None]
@@ -234,7 +260,7 @@ class Function(Generic[P, T]):
 def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
 @overload
 def factor(
-    *, sample: Sampler | None = None, frames: bool = True
+    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
 ) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
 @overload
 def factor(
@@ -244,6 +270,7 @@ def factor(
     mode: str | None = None,
     sample: Sampler | None = None,
     frames: bool = True,
+    chart: ChartLike | None = None,
 ) -> Callable[[Callable[P, Vector]], Function[..., Vector]]: ...
 def factor(
     function: Any = None,
@@ -254,12 +281,15 @@ def factor(
     mode: str | None = None,
     sample: Sampler | None = None,
     frames: bool = True,
+    chart: ChartLike | None = None,
 ) -> Any:
     """Make a factor of a function that returns a residual vector.
 
     Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
     ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
-    not declare frames.
+    not declare frames. ``chart`` is that of ``local`` and ``retract`` and of the Jacobians' columns: the name
+    of a preset (``"sophus"``) or a ``liegen.Chart``; or charts of the columns of single variables,
+    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3.
 
     ``noise`` ("full", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
     covariance^-1, in the frame of the residual: an upper triangular matrix (..., m, m) whose lower part is
@@ -268,18 +298,28 @@ def factor(
     ``mode``: "irls" (the default) or "triggs".
     """
     weighting = read_weighting(noise, loss, mode, str(here()))
-    return _decorated(function, sample, is_factor=True, frames=frames, weighting=weighting)
+    return _decorated(function, sample, is_factor=True, frames=frames, chart=chart, weighting=weighting)
 
 
 @overload
 def function(function: Callable[P, S], /) -> Function[P, S]: ...
 @overload
 def function(
-    *, sample: Sampler | None = None, frames: bool = True
+    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
 ) -> Callable[[Callable[P, S]], Function[P, S]]: ...
-def function(function: Any = None, /, *, sample: Sampler | None = None, frames: bool = True) -> Any:
-    """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``."""
-    return _decorated(function, sample, is_factor=False, frames=frames)
+def function(
+    function: Any = None,
+    /,
+    *,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+) -> Any:
+    """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``.
+
+    ``chart`` as in :func:`factor`; it is that of the Jacobians' rows too.
+    """
+    return _decorated(function, sample, is_factor=False, frames=frames, chart=chart)
 
 
 def _decorated(
@@ -288,14 +328,25 @@ def _decorated(
     *,
     is_factor: bool,
     frames: bool,
+    chart: ChartLike | None,
     weighting: Weighting | None = None,
 ) -> Callable[..., Any]:
     if function is None:
-        return partial(_decorated, sample=sample, is_factor=is_factor, frames=frames, weighting=weighting)
+        return partial(
+            _decorated, sample=sample, is_factor=is_factor, frames=frames, chart=chart, weighting=weighting
+        )
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
-        function, signature(function), function.__name__, doc, is_factor, sample, frames, weighting=weighting
+        function,
+        signature(function),
+        function.__name__,
+        doc,
+        is_factor,
+        sample,
+        frames,
+        chart,
+        weighting=weighting,
     )
     return made

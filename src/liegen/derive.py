@@ -10,6 +10,7 @@ import numpy as np
 
 from liegen.algebra.linear import Matrix
 from liegen.algebra.linear import Vector as Coordinates
+from liegen.charts import GTSAM, form_chart
 from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
@@ -129,6 +130,14 @@ def _conventions(graph: Graph) -> tuple[str, ...]:
     ]
     parameters: list[Any] = [p for _, node in graph.outputs for p in node.operation.parameters]
     owners = [p for p in parameters if isinstance(p, type) and issubclass(p, Manifold)]
-    named = [m.form for m in (*owners, *(p.manifold for p in graph.parameters), *results)]
-    forms = [part for form in named for part in _with_parts(form)]
-    return tuple({form.name: form.note for form in forms}.values())
+    used = [(m.form, GTSAM) for m in owners]
+    used += [(p.manifold.form, p.chart) for p in graph.parameters]
+    used += [(m.form, graph.chart) for m in results]
+    used += [
+        (node.operands[0].manifold.form, graph.chart)
+        for node in graph.nodes()
+        if graph.chart is not GTSAM and node.operation.name in ("local", "retract")
+    ]
+    parts = [(part, preset) for form, preset in used for part in _with_parts(form)]
+    charts = [(form, form_chart(form, preset)) for form, preset in parts]
+    return tuple(dict.fromkeys(form.note if chart is None else chart.note for form, chart in charts))

@@ -84,7 +84,7 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    options = ("names", "targets", "package", "layout", "groups", "noise", "loss", "mode")
+    options = ("names", "targets", "package", "layout", "groups", "chart", "noise", "loss", "mode")
     return replace(requested(original, *(given[key] for key in options)), source=place)
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .shared import (
+    chart_option,
     chosen,
     groups_option,
     names_option,
@@ -44,13 +45,14 @@ class Request:
     package: str
     layout: str
     groups: tuple[str, ...] = ()
+    chart: str | None = None
     noise: str | None = None
     loss: str | None = None
     mode: str | None = None
 
     def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
         """The factors that are asked for, of ``source``, whitened and robust as asked for."""
-        return weighed(chosen(source, self.names, self.groups), self.noise, self.loss, self.mode)
+        return weighed(chosen(source, self.names, self.groups, self.chart), self.noise, self.loss, self.mode)
 
     def command(self, source: str | None, directory: str) -> str:
         """The command line that repeats the request; options with their default value are left out."""
@@ -61,7 +63,7 @@ class Request:
         words += ["-o", directory]
         words += [] if self.package == default_package(source, self.groups) else ["--package", self.package]
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
-        for option in ("noise", "loss", "mode"):
+        for option in ("chart", "noise", "loss", "mode"):
             words += [f"--{option}", getattr(self, option)] if getattr(self, option) else []
         return shlex.join(words)
 
@@ -88,13 +90,13 @@ def requested(
     package: str | None,
     layout: str,
     groups: Sequence[str] = (),
-    *weighting: str | None,
+    *options: str | None,
 ) -> Request:
     """Fill in the defaults; ``weighting`` is noise, loss and mode."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
     called = package or default_package(source, groups)
     unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
-    return Request(source, unique[0], wanted, called, layout, unique[1], *weighting)
+    return Request(source, unique[0], wanted, called, layout, unique[1], *options)
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -142,6 +144,7 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
     "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
     help="col adds C functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
+@chart_option
 @noise_options
 def generate(
     source: str | None,
@@ -151,6 +154,7 @@ def generate(
     output: str,
     package: str | None,
     layout: str,
+    chart: str | None,
     noise: str | None,
     loss: str | None,
     mode: str | None,
@@ -158,7 +162,7 @@ def generate(
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout, groups, noise, loss, mode)
+    request = requested(source, names, targets, package, layout, groups, chart, noise, loss, mode)
     functions = request.chosen(source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")

@@ -19,6 +19,12 @@ names_option = click.option(
 )
 
 
+chart_option = click.option(
+    "--chart", metavar="PRESET", help="Chart of local, retract and the Jacobians' columns: gtsam (default), "
+    "gtsam-4.2, symforce, sophus, manif, ceres, g2o, ros. A factor that states its chart keeps it.",
+)  # fmt: skip
+
+
 groups_option = click.option(
     "--group", "groups", multiple=True, metavar="GROUP",
     help="The functions of this Lie group (SE3, ...) instead of factors; may be repeated.",
@@ -47,20 +53,34 @@ def weighed(
 
 
 def weighed_by_name(
-    source: str | None, groups: Sequence[str], noise: str | None, loss: str | None, mode: str | None
+    source: str | None,
+    groups: Sequence[str],
+    chart: str | None,
+    noise: str | None,
+    loss: str | None,
+    mode: str | None,
 ) -> dict[str, AnyFunction]:
-    """All factors of a source with noise and loss; other processes load them again with it."""
+    """All factors of a source in a chart, with noise and loss; other processes load them again with it."""
     from liegen.sources import load
 
-    factors = [f for f in load(source, groups) if f.is_factor or noise is loss is mode is None]
+    plain = noise is loss is mode is None
+    factors = [f.in_chart(chart) for f in load(source, groups) if f.is_factor or plain]
     return {f.name: f for f in weighed(factors, noise, loss, mode)}
 
 
-def chosen(source: str | None, names: Sequence[str], groups: Sequence[str] = ()) -> tuple[AnyFunction, ...]:
-    """The factors, or the functions of groups, that a command is about."""
+def chosen(
+    source: str | None, names: Sequence[str], groups: Sequence[str] = (), chart: str | None = None
+) -> tuple[AnyFunction, ...]:
+    """The factors, or the functions of groups, that a command is about, in a chart.
+
+    Raises DefinitionError for an unknown chart.
+    """
+    from liegen.charts import preset
     from liegen.sources import load, select
 
-    return select(load(source, groups), names)
+    if chart is not None:
+        preset(chart, "--chart")
+    return tuple(f.in_chart(chart) for f in select(load(source, groups), names))
 
 
 def count(n: int, noun: str) -> str:

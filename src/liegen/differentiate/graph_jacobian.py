@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from liegen.algebra.casadi_backend import ca
 from liegen.algebra.linear import Chain, Matrix, eye, zeros
 from liegen.algebra.linear import Vector as Coordinates
-from liegen.manifolds import Leaf
+from liegen.charts import Preset, form_chart
+from liegen.manifolds import Leaf, Node
 from liegen.trace import Graph, topological
 
 from .eliminate import Strategy, accumulate, eliminate
@@ -65,14 +66,29 @@ def jacobians(
     sinks = {name: -k - 1 for k, (name, _) in enumerate(graph.outputs)}
     for name, node in graph.outputs:
         if id(node) in active:
-            edges[id(node), sinks[name]] = (eye(node.manifold.form.dim),)
-    inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in variables]
+            edges[id(node), sinks[name]] = _rows(node, graph.chart, values)
+    # a variable in another chart begins at a vertex of its own, and its column map is one more factor
+    sources = {v: v for v in variables}
+    for k, (v, p) in enumerate(variables.items()):
+        chart = form_chart(p.manifold.form, p.chart)
+        if chart is not None and v in active:
+            sources[v] = -k - 1 - len(sinks)
+            edges[sources[v], v] = chart.columns(values.scalars[v])
+    begun = {v for v, source in sources.items() if v == source}
+    inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun]
     products = eliminate(edges, inner, strategy)
     return {
-        (name, p.name): products.get((v, sinks[name])) or zeros(node.manifold.form.dim, p.manifold.form.dim)
+        (name, p.name): products.get((sources[v], sinks[name]))
+        or zeros(node.manifold.form.dim, p.manifold.form.dim)
         for name, node in graph.outputs
         for v, p in variables.items()
     }
+
+
+def _rows(node: Node, preset: Preset, values: Expressions) -> Chain:
+    """From right perturbations of an output to its chart's coordinates."""
+    chart = form_chart(node.manifold.form, preset)
+    return (eye(node.manifold.form.dim),) if chart is None else chart.rows(values.scalars[id(node)])
 
 
 def _active(graph: Graph) -> set[int]:

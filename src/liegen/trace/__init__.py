@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from .charting import ChartLike as ChartLike
+from .charting import in_charts as in_charts
 from .formulas import formula as formula
 from .frame_check import check_frames as check_frames
 from .frame_names import Frames as Frames

@@ -140,8 +140,13 @@ def additive(node: Node) -> bool:
 def exponential(node: Node) -> bool:
     """Whether an operation is that of a group, and follows the exponential chart if it is one of a chart."""
     form = _own(node).form
-    charted = node.operation.name in ("retract", "local")
-    return isinstance(form, GroupForm) and (form.exponential or not charted)
+    of_chart = node.operation.name in ("retract", "local")
+    return isinstance(form, GroupForm) and (form.exponential or not of_chart) and not charted(node)
+
+
+def charted(node: Node) -> bool:
+    """Whether a node is ``local`` or ``retract`` in a chart that is not the group's own."""
+    return node.operation.name in ("local", "retract") and bool(node.operation.parameters)
 
 
 def _parts(node: Node) -> Mapping[str, Blocks]:
@@ -169,14 +174,20 @@ def _places(node: Node) -> Blocks:
     if name in _SLOPE and elementwise(node):
         return tuple(_slope(slope, k, node) for k, slope in enumerate(_SLOPE[name]))
     own = _own(node)
+    if charted(node):
+        return _derivatives(name, len(operands))
     flat = additive(node) or issubclass(own, SO2)
     curved: Mapping[str, Blocks] = _GROUP if exponential(node) else {}
     for table in (_ADDITIVE if flat else curved, _parts(node), _VECTOR):
         if name in table:
             return table[name]
-    numbers = [""] if len(operands) == 1 else [str(k + 1) for k in range(len(operands))]
-    places = tuple(range(len(operands)))
-    return tuple(Block("derivative", places, f"{number}[{name}]") for number in numbers)
+    return _derivatives(name, len(operands))
+
+
+def _derivatives(name: str, operands: int) -> Blocks:
+    """``D1[f](a, b)``: where there is no shorter name."""
+    numbers = [""] if operands == 1 else [str(k + 1) for k in range(operands)]
+    return tuple(Block("derivative", tuple(range(operands)), f"{number}[{name}]") for number in numbers)
 
 
 def _slope(slope: Block | int, k: int, node: Node) -> Block:

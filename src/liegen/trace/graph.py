@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from liegen.charts import GTSAM, Preset
 from liegen.errors import Site
 from liegen.manifolds import Manifold, Node
 
@@ -21,6 +22,7 @@ class Parameter:
     variable: bool
     node: Node
     frames: Declared | None = None
+    chart: Preset = GTSAM  # of its Jacobians' columns
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +56,7 @@ class Graph:
     domain: tuple[Domain, ...]
     calls: tuple[Call, ...] = ()
     frames: FrameReport = field(default_factory=FrameReport)
+    chart: Preset = GTSAM  # of local and retract, and of outputs on groups
 
     def nodes(self) -> tuple[Node, ...]:
         """All nodes that outputs and domain need, operands first."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from liegen.charts import form_chart
 from liegen.manifolds import Leaf, Node
 
 from .blocks import blocks
@@ -47,6 +48,7 @@ def jacobian_lines(graph: Graph, inline: Callable[[Node], bool]) -> Lines:
     ``inline`` says which values may stand in a block as they are, without a name.
     """
     variables = {id(p.node): p.node for p in graph.parameters if p.variable}
+    charted = {id(p.node) for p in graph.parameters if form_chart(p.manifold.form, p.chart)}
     active = _active(graph, variables)
     shared = named_values(graph)
     names, definitions = _all_names(graph, active, shared, inline)
@@ -54,7 +56,7 @@ def jacobian_lines(graph: Graph, inline: Callable[[Node], bool]) -> Lines:
     lines: list[Derivative] = []
     derivatives: dict[int, dict[int, list[Term]]] = {}
     for node in active:
-        terms = _chain_rule(node, derivatives, variables)
+        terms = _chain_rule(node, derivatives, variables, charted)
         several = id(node) in shared or any(len(products) > 1 for products in terms.values())
         if several and id(node) in names and id(node) not in outputs:
             own = [
@@ -66,9 +68,17 @@ def jacobian_lines(graph: Graph, inline: Callable[[Node], bool]) -> Lines:
             terms |= {id(d.variable): [(1, (Block("of by", (d.node, d.variable)),))] for d in own}
         derivatives[id(node)] = terms
     for name, node in graph.outputs:
-        found = derivatives.get(id(node), {})
+        found = _in_rows(node, derivatives.get(id(node), {}), graph)
         lines += [Derivative(name, node, variables[v], tuple(found.get(v, ()))) for v in variables]
     return Lines(names, tuple(definitions), tuple(lines))
+
+
+def _in_rows(node: Node, terms: Mapping[int, list[Term]], graph: Graph) -> Mapping[int, list[Term]]:
+    """The rows of an output on a group in its chart."""
+    if form_chart(node.manifold.form, graph.chart) is None:
+        return terms
+    rows = Block("Chart^-1", (node,))
+    return {v: [(s, (rows, *rest)) for s, rest in products] for v, products in terms.items()}
 
 
 def _trivial(products: list[Term]) -> bool:
@@ -88,11 +98,14 @@ def _factors(block: Block) -> Iterator[Block]:
 
 
 def _chain_rule(
-    node: Node, derivatives: Mapping[int, Mapping[int, list[Term]]], variables: Mapping[int, Node]
+    node: Node,
+    derivatives: Mapping[int, Mapping[int, list[Term]]],
+    variables: Mapping[int, Node],
+    charted: Collection[int],
 ) -> dict[int, list[Term]]:
     """The derivative of a node by each variable, from those of its operands."""
     if id(node) in variables:
-        return {id(node): [(1, ())]}
+        return {id(node): [(1, (Block("Chart", (node,)),) if id(node) in charted else ())]}
     terms: dict[int, list[Term]] = {}
     for block, operand in zip(blocks(node), node.operands, strict=True):
         for variable, products in derivatives.get(id(operand), {}).items():

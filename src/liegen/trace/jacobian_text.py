@@ -25,6 +25,8 @@ _LEGEND: Mapping[str, str] = {
     "diag(": "diag(v): diagonal matrix",
     " M": "M: the constant matrix of the formula",
     "D[": "D[f](a): derivative of f at a",
+    "Chart(": "Chart(x): column map of the chart of x, d Log(x^-1 x.retract(d))/dd at 0",
+    "Chart^-1(": "Chart^-1(x): inverse of the column map of the chart of x",
     "D1[": "D1[f](a, b): derivative of f by its first operand",
     "D2[": "D2[f](a, b): derivative of f by its second operand",
 }

@@ -105,6 +105,8 @@ HEADS: Mapping[str, tuple[Layout, Layout]] = {
     "R": (Layout("R(#0)"), Layout(r"\mathrm{R}_{#0}")),
     # the matrix of a rotation, and of the rotation of a pose
     "matrix": (Layout("R(#0)"), Layout("#0", ATOM, (ATOM,))),
+    "Chart": (Layout("Chart(#0)"), Layout(r"M_{#0}")),
+    "Chart^-1": (Layout("Chart^-1(#0)"), Layout(r"M^{-1}_{#0}")),
     "velocity": (Layout("#0.velocity", ATOM, (ATOM,)), Layout(r"\mathrm{v}_{#0}")),
     "B": (Layout("B(#0)"), Layout("B_{#0}")),
     "unit row": (

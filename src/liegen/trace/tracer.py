@@ -11,10 +11,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
+from liegen.charts import Preset
 from liegen.errors import DefinitionError, LiegenError, Site
 from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
 
+from .charting import ChartLike, common_chart, in_charts
 from .frame_check import check_frames
 from .frame_names import Declared, Frames, declared
 from .graph import Call, Domain, Graph, Parameter, topological
@@ -26,6 +28,7 @@ class _Record:
 
     domain: list[Domain]
     calls: list[Call]
+    chart: Preset
 
 
 _record: ContextVar[_Record | None] = ContextVar("record", default=None)
@@ -81,12 +84,28 @@ def require(condition: Condition | bool, message: str) -> None:
 
 
 def inlined(
-    name: str, site: Site, given: Sequence[tuple[Signature, Value]], result: Any, *, frames: bool
+    name: str,
+    site: Site,
+    given: Sequence[tuple[Signature, Value]],
+    result: Any,
+    *,
+    frames: bool,
+    chart: ChartLike | None,
 ) -> None:
-    """Note that a factor was called on traced values; ``frames``: whether its frames are checked."""
+    """Note that a factor was called on traced values; ``frames``: whether its frames are checked.
+
+    Raises DefinitionError for a factor that states another ``chart`` than the one that is being traced: its
+    ``local`` and ``retract`` would change their meaning.
+    """
     record = _record.get()
     if record is None:
         return
+    inner = record.chart if chart is None else common_chart(chart, f"{site}: {name}")
+    if inner != record.chart:
+        raise DefinitionError(
+            f"{site}: {name} is in the chart {inner.name}, but is called in a factor in the chart "
+            f"{record.chart.name}; give both the same chart"
+        )
     values = result.values.values() if isinstance(result, Outputs) else [result]
     arguments = tuple(Parameter(s.name, s.manifold, s.variable, node_of(v), s.frames) for s, v in given)
     results = tuple(node_of(v) for v in values if isinstance(v, Value))
@@ -165,8 +184,9 @@ def trace(
     *,
     factor: bool,
     frames: bool = True,
+    chart: ChartLike | None = None,
 ) -> Graph:
-    """Call ``function`` once on traced values.
+    """Call ``function`` once on traced values, and put ``local``, ``retract`` and columns into ``chart``.
 
     Raises DefinitionError for everything that the function does wrong: a result that is no vector, a variable
     that no output depends on, whatever its operations refuse, and, with ``frames``, frames that do not fit.
@@ -179,7 +199,7 @@ def trace(
     )
     traced = {p.name: p.manifold.holding(node=p.node) for p in parameters}
     values = {s.name: s.bound if s.bound is not None else traced[s.name] for s in declared}
-    with _recording() as record:
+    with _recording(common_chart(chart, f"{site}: {name}")) as record:
         try:
             result = function(*(values[s.name] for s in declared if s.positional),
                               **{s.name: values[s.name] for s in declared if not s.positional})  # fmt: skip
@@ -190,7 +210,8 @@ def trace(
     named = _outputs(result, f"{site}: {name}", factor=factor)
     graph = Graph(name, doc, site, parameters, named, tuple(record.domain), tuple(record.calls))
     _all_used(graph)
-    return replace(graph, frames=check_frames(graph)) if frames else graph
+    checked = replace(graph, frames=check_frames(graph)) if frames else graph
+    return in_charts(checked, chart)
 
 
 def _with_site(name: str, error: LiegenError) -> str:
@@ -208,8 +229,8 @@ def _explained(error: Exception) -> str:
 
 
 @contextmanager
-def _recording() -> Any:
-    record = _Record([], [])
+def _recording(chart: Preset) -> Any:
+    record = _Record([], [], chart)
     token = _record.set(record)
     try:
         yield record

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.charts import Preset
 from liegen.manifolds import Vector
 from liegen.trace import Graph, Parameter
 
@@ -85,7 +86,7 @@ def _compared(
         ends = results[name]
         if not np.isfinite(ends).all():
             return None
-        changes = _changes(node.manifold, _unwrapped(graph, name, sample.values, moved, ends))
+        changes = _changes(node.manifold, graph.chart, _unwrapped(graph, name, sample.values, moved, ends))
         changes = changes.reshape(len(STEPS), p.manifold.form.dim, 2, -1)
         size = max(1.0, float(np.abs(ends).max()), *(abs(x) for v in sample.values.values() for x in v))
         estimate, slope = _best(changes, size)
@@ -122,16 +123,16 @@ def _moved(values: Values, p: Parameter) -> list[dict[str, tuple[float, ...]]]:
         for column in range(p.manifold.form.dim):
             for sign in (1.0, -1.0):
                 d = [sign * step if i == column else 0.0 for i in range(p.manifold.form.dim)]
-                moved.append({**values, p.name: reference.retract(p.manifold, values[p.name], d)})
+                moved.append({**values, p.name: reference.retract(p.manifold, values[p.name], d, p.chart)})
     return moved
 
 
-def _changes(manifold: Any, ends: Array) -> Array:
+def _changes(manifold: Any, chart: Preset, ends: Array) -> Array:
     """The tangent vectors from the last result to the others."""
     if _is_vector(manifold):
         return ends[:-1] - ends[-1]
     start = tuple(ends[-1].tolist())
-    return np.array([reference.local(manifold, start, tuple(end.tolist())) for end in ends[:-1]])
+    return np.array([reference.local(manifold, start, tuple(end.tolist()), chart) for end in ends[:-1]])
 
 
 def _is_vector(manifold: Any) -> bool:

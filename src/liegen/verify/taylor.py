@@ -17,10 +17,10 @@ from liegen.trace import Graph, Parameter
 
 from . import reference
 from .draws import Sample, generator_for
+from .reference.charts import space_in
 from .reference.interpreter import loaded, run
 from .reference.logarithms import PRINCIPAL
 from .reference.matrix import mp
-from .reference.spaces import space_of
 from .report import Check
 
 Array = NDArray[np.float64]
@@ -124,11 +124,11 @@ def _remainders(
 ) -> dict[str, float]:
     """|f(x + h d) - f(x) - h J d| for every output, h = 10^power; d moves the variable p."""
     step = tuple(mp.mpf(10) ** power * mp.mpf(float(x)) for x in direction)
-    moved = space_of(p.manifold).retract(given[p.node], step, PRINCIPAL)
+    moved = space_in(p.manifold, p.chart).retract(given[p.node], step, PRINCIPAL)
     end = run(base.graph, tuple(base.values), {**given, p.node: moved}, base)
     sizes: dict[str, float] = {}
     for name, node in base.graph.outputs:
-        change = reference.difference(node.manifold, base[node], end[node])
+        change = reference.difference(node.manifold, base[node], end[node], base.graph.chart)
         rows: list[list[float]] = jacobians[f"{name}_D_{p.name}"].tolist()
         linear = [mp.fdot([mp.mpf(x) for x in row], step) for row in rows]
         gaps = [abs(c - e) for c, e in zip(change, linear, strict=True)]

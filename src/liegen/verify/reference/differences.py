@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .calls import broadcast, is_elementwise
+from .charts import space_in
 from .interpreter import DIGITS, Evaluation, Sample, loaded, run
-from .logarithms import Branch
+from .logarithms import PRINCIPAL, Branch
 from .matrix import Element, Number, Vector, length, mp
-from .spaces import principal_local, space_of
 
 if TYPE_CHECKING:
     from liegen.manifolds import Node
@@ -43,7 +43,7 @@ def jacobians(graph: Graph, sample: Sample, *, flip: bool = False) -> Jacobians:
 def _by_variable(
     base: Evaluation, given: Mapping[Node, Element], p: Parameter, step: Number
 ) -> dict[str, list[list[Number]]]:
-    space, x = space_of(p.manifold), given[p.node]
+    space, x = space_in(p.manifold, p.chart), given[p.node]
     nodes = tuple(base.values)
     columns: dict[str, list[Vector]] = {name: [] for name, _ in base.graph.outputs}
     for k in range(space.dim(x)):
@@ -53,7 +53,8 @@ def _by_variable(
             moved = space.retract(x, d, Branch())
             ends.append(run(base.graph, nodes, {**given, p.node: moved}, base))
         for name, node in base.graph.outputs:
-            forth, back = (principal_local(node.manifold, base[node], end[node]) for end in ends)
+            rows = space_in(node.manifold, base.graph.chart)
+            forth, back = (rows.local(base[node], end[node], PRINCIPAL) for end in ends)
             columns[name].append(tuple((f - b) / (2 * step) for f, b in zip(forth, back, strict=True)))
     return {name: [list(row) for row in zip(*entries, strict=True)] for name, entries in columns.items()}
 

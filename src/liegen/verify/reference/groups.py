@@ -7,8 +7,9 @@ from typing import Any
 
 from . import extended, galilean
 from .calls import Call, Rule, plain
+from .charts import space_in
 from .matrix import Element, Matrix, Vector, add, matvec, normalised, sub, transpose
-from .spaces import GroupSpace, group_of, pose, rotation_of, space_of, translation_of
+from .spaces import GroupSpace, Space, group_of, pose, rotation_of, space_of, translation_of
 
 
 def _group(call: Call) -> GroupSpace:
@@ -38,14 +39,20 @@ def log(call: Call) -> Vector:
     return _group(call).log(call.values[0], call.branch)
 
 
+def _space(call: Call) -> Space:
+    """The operand's manifold, in the chart that the operation carries."""
+    manifold = call.operands[0].manifold
+    return space_in(manifold, *call.operation.parameters) if call.operation.parameters else space_of(manifold)
+
+
 def _retract(call: Call) -> Element:
     x, d = call.values
-    return space_of(call.operands[0].manifold).retract(x, d, call.branch)
+    return _space(call).retract(x, d, call.branch)
 
 
 def _local(call: Call) -> Vector:
     x, y = call.values
-    return space_of(call.operands[0].manifold).local(x, y, call.branch)
+    return _space(call).local(x, y, call.branch)
 
 
 def _direction(call: Call) -> Element:

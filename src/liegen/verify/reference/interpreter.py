@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from . import cameras, groups, tangent, vectors, weights
 from .calls import Call, Rule
-from .logarithms import Branch
+from .charts import space_in
+from .logarithms import PRINCIPAL, Branch
 from .matrix import Element, Vector, mp
-from .spaces import load, principal_local, space_of
+from .spaces import load, space_of
 
 if TYPE_CHECKING:
+    from liegen.charts import Preset
     from liegen.manifolds import Node, Value
     from liegen.trace import Graph
 
@@ -114,10 +116,10 @@ def holds(graph: Graph, sample: Sample) -> tuple[bool, ...]:
     return evaluate(graph, sample).holds
 
 
-def difference(manifold: type[Value], a: Element, b: Element) -> Vector:
+def difference(manifold: type[Value], a: Element, b: Element, chart: Preset | None = None) -> Vector:
     """The tangent vector at ``a`` that leads to ``b``."""
     with mp.workdps(DIGITS):
-        return principal_local(manifold, a, b)
+        return space_in(manifold, chart).local(a, b, PRINCIPAL)
 
 
 def from_coords(manifold: type[Value], coords: Sequence[float]) -> Element:
@@ -134,15 +136,20 @@ def to_coords(
         return tuple(float(x) for x in space_of(manifold).store(element, like))
 
 
-def retract(manifold: type[Value], coords: Sequence[float], d: Sequence[float]) -> tuple[float, ...]:
+def retract(
+    manifold: type[Value], coords: Sequence[float], d: Sequence[float], chart: Preset | None = None
+) -> tuple[float, ...]:
     """``coords`` moved by the tangent vector ``d``, rounded to doubles; a quaternion keeps its side."""
     with mp.workdps(DIGITS):
         step = tuple(mp.mpf(float(x)) for x in d)
-        moved = space_of(manifold).retract(load(manifold, coords), step, Branch())
+        moved = space_in(manifold, chart).retract(load(manifold, coords), step, Branch())
         return to_coords(manifold, moved, coords)
 
 
-def local(manifold: type[Value], a: Sequence[float], b: Sequence[float]) -> tuple[float, ...]:
+def local(
+    manifold: type[Value], a: Sequence[float], b: Sequence[float], chart: Preset | None = None
+) -> tuple[float, ...]:
     """The tangent vector at ``a`` that leads to ``b``, rounded to doubles."""
     with mp.workdps(DIGITS):
-        return tuple(float(x) for x in principal_local(manifold, load(manifold, a), load(manifold, b)))
+        ends = load(manifold, a), load(manifold, b)
+        return tuple(float(x) for x in space_in(manifold, chart).local(*ends, PRINCIPAL))
