@@ -12,7 +12,8 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
-    "noise", "program", "kernel", "derive", "define", "samples", "library", "modules", "sources", "emit",
+    "noise", "program", "kernel", "derive", "define", "decorate", "samples", "library", "modules", "sources",
+    "emit",
     "native", "verify", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.

@@ -12,9 +12,9 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from .charts import Chart as Chart
+    from .decorate import factor as factor
+    from .decorate import function as function
     from .define import Function as Function
-    from .define import factor as factor
-    from .define import function as function
     from .errors import DefinitionError as DefinitionError
     from .errors import LiegenError as LiegenError
     from .manifolds import R1 as R1
@@ -64,7 +64,8 @@ if TYPE_CHECKING:
 
 _NAMES: dict[str, tuple[str, ...]] = {
     ".charts": ("Chart",),
-    ".define": ("Function", "factor", "function"),
+    ".decorate": ("factor", "function"),
+    ".define": ("Function",),
     ".errors": ("DefinitionError", "LiegenError"),
     ".manifolds": (
         "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE23", "SE3", "SO2", "SO3",

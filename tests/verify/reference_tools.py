@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 
 import liegen.manifolds as lm
-from liegen.define import factor
+from liegen.decorate import factor
 from liegen.manifolds import (
     R1,
     R2,

@@ -21,7 +21,7 @@ from reference_tools import (
     tangent,
 )
 
-from liegen.define import factor
+from liegen.decorate import factor
 from liegen.manifolds import R1, R2, R3, S2, SO3, Vector
 from liegen.manifolds.functions import (
     abs as vabs,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from liegen.define import function
+from liegen.decorate import function
 from liegen.manifolds import R2, R3, S2, SE2, SE3, SO3, Cal3_S2, Cal3Bundler, Cal3DS2
 from liegen.manifolds.functions import (
     abs as vabs,

@@ -5,7 +5,7 @@ The orientation of x matters, that of y does not. Undefined where both positions
 
 from __future__ import annotations
 
-from liegen.define import factor
+from liegen.decorate import factor
 from liegen.manifolds import R2, R3, S2, SE2, SE3, SO2
 
 from . import sampling

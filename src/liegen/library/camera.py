@@ -5,7 +5,7 @@ Generic projection holds the calibration fixed; in general structure from motion
 
 from __future__ import annotations
 
-from liegen.define import factor
+from liegen.decorate import factor
 from liegen.manifolds import R2, R3, SE3, Cal3_S2, Cal3Bundler, Cal3DS2, Calibration
 from liegen.trace import require
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from liegen.define import factor
+from liegen.decorate import factor
 from liegen.manifolds import R2, R3, S2, SE2, SE3, SO2, SO3
 
 from . import sampling

@@ -5,7 +5,7 @@ Where both positions coincide the distance is 0 and its gradient 0.
 
 from __future__ import annotations
 
-from liegen.define import factor
+from liegen.decorate import factor
 from liegen.manifolds import R1, R2, R3, SE2, SE3
 
 from . import sampling

@@ -1,0 +1,115 @@
+"""The decorators ``@factor`` and ``@function``."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import partial
+from typing import Any, ParamSpec, TypeVar, overload
+
+from liegen.define import Function, Sampler
+from liegen.errors import DefinitionError
+from liegen.manifolds import Manifold, Vector
+from liegen.manifolds.node import here
+from liegen.noise import Weighting
+from liegen.noise import weighting as read_weighting
+from liegen.trace import ChartLike, Outputs, signature
+
+P = ParamSpec("P")
+S = TypeVar("S", bound="Manifold | Outputs")
+
+
+@overload
+def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
+@overload
+def factor(
+    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
+) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
+@overload
+def factor(
+    *,
+    noise: str | None = None,
+    loss: str | None = None,
+    mode: str | None = None,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+) -> Callable[[Callable[P, Vector]], Function[..., Vector]]: ...
+def factor(
+    function: Any = None,
+    /,
+    *,
+    noise: str | None = None,
+    loss: str | None = None,
+    mode: str | None = None,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+) -> Any:
+    """Make a factor of a function that returns a residual vector.
+
+    Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
+    ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
+    not declare frames. ``chart`` is that of ``local`` and ``retract`` and of the Jacobians' columns: the name
+    of a preset (``"sophus"``) or a ``liegen.Chart``; or charts of the columns of single variables,
+    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3.
+
+    ``noise`` ("full", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
+    covariance^-1, in the frame of the residual: an upper triangular matrix (..., m, m) whose lower part is
+    not read, or 1 / standard deviation (..., m) or (..., 1). ``loss`` (see ``liegen.noise.LOSSES``) adds
+    its parameters. Outputs are then those of least squares on the cost 1/2 rho(|S r|^2), weighed by
+    ``mode``: "irls" (the default) or "triggs".
+    """
+    weighting = read_weighting(noise, loss, mode, str(here()))
+    return _decorated(function, sample, is_factor=True, frames=frames, chart=chart, weighting=weighting)
+
+
+@overload
+def function(function: Callable[P, S], /) -> Function[P, S]: ...
+@overload
+def function(
+    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
+) -> Callable[[Callable[P, S]], Function[P, S]]: ...
+def function(
+    function: Any = None,
+    /,
+    *,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+) -> Any:
+    """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``.
+
+    ``chart`` as in :func:`factor`; it is that of the Jacobians' rows too.
+    """
+    return _decorated(function, sample, is_factor=False, frames=frames, chart=chart)
+
+
+def _decorated(
+    function: Any,
+    sample: Sampler | None,
+    *,
+    is_factor: bool,
+    frames: bool,
+    chart: ChartLike | None,
+    weighting: Weighting | None = None,
+) -> Callable[..., Any]:
+    if function is None:
+        return partial(
+            _decorated, sample=sample, is_factor=is_factor, frames=frames, chart=chart, weighting=weighting
+        )
+    if not inspect.isfunction(function):
+        raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
+    doc = inspect.getdoc(function) or ""
+    made: Function[..., Any] = Function(
+        function,
+        signature(function),
+        function.__name__,
+        doc,
+        is_factor,
+        sample,
+        frames,
+        chart,
+        weighting=weighting,
+    )
+    return made
