@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from liegen.decorate import function
-from liegen.manifolds import R2, R3, S2, SE2, SE3, SO3, Cal3_S2, Cal3Bundler, Cal3DS2
+from liegen.library import between_r3
+from liegen.manifolds import (
+    R2,
+    R3,
+    S2,
+    SE2,
+    SE3,
+    SE23,
+    SO3,
+    Cal3_S2,
+    Cal3Bundler,
+    Cal3DS2,
+    Gal3,
+    Product,
+)  # fmt: skip
 from liegen.manifolds.functions import (
     abs as vabs,
 )
@@ -30,6 +45,8 @@ from liegen.manifolds.functions import (
 )
 from liegen.manifolds.vector import norm, stack
 from liegen.modules import group_functions
+from liegen.noise import weighting
+from liegen.noise.extend import cost_graph
 from liegen.trace import outputs
 from liegen.verify import reference
 
@@ -99,6 +116,26 @@ def cameras_language(K: Cal3_S2, D: Cal3DS2, B: Cal3Bundler, *, p: R2) -> Any:
     )
 
 
+class Placed(Product):
+    pose: SE3
+    point: R3
+
+
+@function
+def extended_language(x: SE23, g: Gal3, *, d: R3) -> Any:
+    s = Placed(pose=x.pose, point=x.velocity)
+    return outputs(
+        x=SE23(x.rotation, x.position + d, x.velocity),
+        g=Gal3(g.rotation, g.position + g.velocity, d, g.time),
+        s=s.retract(stack(d, d, d)),
+        moved=s.pose @ s.point,
+    )
+
+
+WHITENED = between_r3.whitened("full")
+COST = SimpleNamespace(name="cost", graph=cost_graph(between_r3.plain, weighting("full", "cauchy", None, "")))
+
+
 def in_doubles(graph: Any, sample: Any) -> dict[str, Any]:
     """The outputs by the operations' own closed forms on floats."""
     values = {id(p.node): tuple(map(np.float64, sample[p.name])) for p in graph.parameters}
@@ -110,13 +147,15 @@ def in_doubles(graph: Any, sample: Any) -> dict[str, Any]:
 
 
 MATRICES = [f for group in (SE2, SE3) for f in group_functions(group) if not f.kernel.variables]
-LANGUAGES = [groups_language, vectors_language, cameras_language, *MATRICES]
+LANGUAGES = [
+    groups_language, vectors_language, cameras_language, extended_language, WHITENED, COST, *MATRICES,
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("language", LANGUAGES, ids=lambda f: f.name)
 def test_every_operation_agrees_with_the_closed_forms_on_doubles(language: Any) -> None:
     g = np.random.default_rng(11)
-    size = {"SE3": 4, "SE2": 2, "S2": 3}
+    size = {"SE3": 4, "SE2": 2, "S2": 3, "SE23": 4, "Gal3": 4}
     for _ in range(5):
         sample: dict[str, Any] = {}
         for p in language.graph.parameters:
