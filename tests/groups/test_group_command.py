@@ -19,7 +19,7 @@ from liegen.native import find_compiler
 ROOT = Path(__file__).resolve().parents[2]
 TREE = ROOT / "generated" / "groups"
 DOCUMENT = (ROOT / "docs" / "group_modules.md").read_text(encoding="utf-8")
-needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler")
+needs_compiler = pytest.mark.skipif(not find_compiler(), reason="there is no C compiler")
 
 
 def run(*arguments, code=0):

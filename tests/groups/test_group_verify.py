@@ -19,7 +19,7 @@ from liegen.verify.factor import check_factor
 from liegen.verify.in_place import in_place
 
 FUNCTIONS = every_function()
-needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="there is no C compiler")
+needs_compiler = pytest.mark.skipif(not find_compiler(), reason="there is no C compiler")
 
 
 @pytest.fixture(scope="module")
