@@ -58,11 +58,6 @@ def _of_groups(source: str | None, names: Sequence[str]) -> tuple[AnyFunction, .
     return tuple(f for name in names for f in group_functions(group_named(name)))
 
 
-def by_name(source: str | None, groups: Sequence[str] = ()) -> dict[str, AnyFunction]:
-    """The same by name; other processes load a source again with it."""
-    return {f.name: f for f in load(source, groups)}
-
-
 def select(functions: Sequence[AnyFunction], names: Iterable[str]) -> tuple[AnyFunction, ...]:
     """The functions with the given names, in their own order; all of them when no name is given.
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from . import extended, galilean, sphere
 from .contract import GroupSpace, Space, Store
-from .logarithms import PRINCIPAL, Branch, log_se2, log_se3, log_so2, log_so3
+from .logarithms import Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
     Element,
     Matrix,
@@ -259,11 +259,6 @@ def _sized(form: ManifoldForm) -> list[tuple[int, int]]:
     return [(part.size, part.dim) for part in form.parts]
 
 
-def is_vector(manifold: type[Value]) -> bool:
-    """Whether it is some R^n."""
-    return not manifold.form.parts and _key(manifold.form) == "R"
-
-
 def _numbers(coords: Sequence[float]) -> Vector:
     return tuple(mp.mpf(float(c)) for c in coords)
 
@@ -271,8 +266,3 @@ def _numbers(coords: Sequence[float]) -> Vector:
 def load(manifold: type[Value], coords: Sequence[float]) -> Element:
     """The element that stored floats stand for, at the working precision; nothing is rounded."""
     return space_of(manifold).load(_numbers(coords))
-
-
-def principal_local(manifold: type[Value], a: Element, b: Element) -> Vector:
-    """The tangent vector at ``a`` that leads to ``b``, of the principal branch."""
-    return space_of(manifold).local(a, b, PRINCIPAL)
