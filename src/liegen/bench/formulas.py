@@ -12,9 +12,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from liegen.decorate import factor, function
-from liegen.manifolds import R1, R2, R3, R4, R5, SE2, SE3, SO3, Product, Value
+from liegen.manifolds import R1, R2, R3, R4, R5, SE2, SE3, SO2, SO3, Product, Value
 from liegen.manifolds.functions import abs as absolute
-from liegen.manifolds.functions import atan2, dot
+from liegen.manifolds.functions import dot
 from liegen.manifolds.vector import norm, stack
 from liegen.samples import Case, Draw
 
@@ -100,8 +100,8 @@ def _sighted(draw: Draw, case: Case) -> Mapping[str, Value]:
 @factor(sample=_sighted)
 def bearing_range_se2_r2(x: SE2, p: R2, *, z: R2):
     """Angle [rad] and distance [m] of the point p seen from the pose x, minus those measured, not wrapped."""
-    q = x.transform_to(p)
-    return stack(atan2(q[1], q[0]) - z[0], norm(q) - z[1])
+    d = p - x.translation
+    return stack(x.rotation.between(SO2.direction(d)).log() - z[0], norm(d) - z[1])
 
 
 def _two(draw: Draw, case: Case) -> Mapping[str, Value]:
