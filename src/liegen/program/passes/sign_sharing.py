@@ -56,10 +56,14 @@ def signs(program: Program) -> Program:
     return found if found.operations <= program.operations else program
 
 
+#: Operation, number, operands and their signs: what makes two nodes equal.
+Key = tuple[str, float, tuple[int, ...], tuple[int, ...]]
+
+
 def signed(program: Program) -> tuple[list[Node], list[tuple[int, int]]]:
     """The nodes of a program, equal ones shared, and each instruction as (node, sign)."""
     nodes: list[Node] = []
-    index: dict[object, int] = {}
+    index: dict[Key, int] = {}
     place: list[tuple[int, int]] = []
     zero = -1
     for ins in program.code:
