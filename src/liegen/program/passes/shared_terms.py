@@ -25,8 +25,17 @@ def terms(program: Program) -> Program:
     """
     program = dead(program)
     work = _Work(program)
-    found = signs(work.emitted()) if work.improve() else program
+    if not work.improve():
+        return program
+    found = work.emitted()
+    if found.operations >= program.operations and _settled(found) < _settled(program):
+        found = signs(found)  # only negations are in the way
     return found if found.operations < program.operations else program
+
+
+def _settled(program: Program) -> int:
+    """Operations without negations."""
+    return program.operations - program.op_counts().get("neg", 0)
 
 
 class _Work:
