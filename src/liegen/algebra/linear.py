@@ -143,13 +143,11 @@ def elementwise(f: Callable[[Scalar, Scalar], Scalar], a: Matrix, b: Matrix) -> 
 
 def matadd(a: Matrix, b: Matrix) -> Matrix:
     """Return A + B."""
-    return tuple(
-        [s if _nothing(r) else r if _nothing(s) else add(r, s) for r, s in zip(a, b, strict=True)]
-    )
+    return tuple([s if _nothing(r) else r if _nothing(s) else add(r, s) for r, s in zip(a, b, strict=True)])
 
 
 def _nothing(row: Sequence[Scalar]) -> bool:
-    return all([type(x) is int and x == 0 for x in row])
+    return not any(type(x) is not int or x for x in row)
 
 
 def matscale(k: Scalar, a: Matrix) -> Matrix:

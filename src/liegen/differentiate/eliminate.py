@@ -46,7 +46,7 @@ def markowitz(graph: Elimination, inner: Sequence[int]) -> Iterator[int]:
     heap = [(graph.cost(v), k, v) for v, k in place.items()]
     heapify(heap)
     while heap:
-        cost, k, v = heappop(heap)
+        cost, _, v = heappop(heap)
         if v not in place or cost != graph.cost(v):
             continue  # eliminated already, or here again with another cost
         del place[v]

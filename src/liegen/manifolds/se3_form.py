@@ -11,6 +11,7 @@ from liegen.coefficients import stumpff
 
 from . import dual
 from .form import Compute, Coords, PoseForm, Rule
+from .relative import relative_rule
 from .so3_form import SO3Form, series
 
 
@@ -52,7 +53,7 @@ class SE3Form(PoseForm):
             d = matvec(transpose(self.rotation.matrix(c[:4])), sub(c[4:], z[4:]))
             return (*phi, *matvec(self.rotation.Jr_inv(phi, principal=True), d))
 
-        return value, self.local_between_blocks()
+        return value, relative_rule(self)
 
     def adjoint(self, a: Coords) -> Chain:
         """[[R, 0], [[t]x R, R]] as a product (micro Lie, eq. 175)."""
