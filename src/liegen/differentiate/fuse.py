@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from liegen.charts import Preset, form_chart
 from liegen.manifolds import Node, Operation
 from liegen.manifolds.form import GroupForm
 from liegen.trace import Graph
@@ -32,15 +33,16 @@ def fused(graph: Graph) -> Graph:
 
 
 def _local_between(node: Node, operands: tuple[Node, ...]) -> Node | None:
-    """z.local(c) with c = x.between(y), in the default chart, as one operation on z, x and y."""
+    """z.local(c) with c = x.between(y) as one operation on z, x and y, in the chart of ``local``."""
     operation = node.operation
-    if operation.name != "local" or operation.parameters:
+    if operation.name != "local" or operands[1].operation.name != "between":
         return None
     z, c = operands
     form = c.manifold.form
-    if c.operation.name != "between" or not isinstance(form, GroupForm):
-        return None
-    known = form.local_between()
+    presets = [p for p in operation.parameters if isinstance(p, Preset)]
+    chart = form_chart(form, presets[0]) if presets else None
+    offers = form if isinstance(form, GroupForm) else None
+    known = chart.local_between() if chart else offers.local_between() if offers else None
     if known is None:
         return None
     value, blocks = known
