@@ -6,8 +6,9 @@ chain of factors can be multiplied out in several ways. All are correct, their n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from liegen.algebra.linear import Chain, Matrix, matadd, product, product_from_left
 
@@ -41,8 +42,10 @@ STRATEGIES: Mapping[str, Strategy] = {
 }
 
 
-def eliminate(edges: Edges, inner: Sequence[int], strategy: Strategy) -> dict[tuple[int, int], Matrix]:
-    """Jacobians of the remaining vertices: {(from, to): matrix}."""
+def eliminate(
+    edges: Edges, inner: Sequence[int], strategy: Strategy, simplified: Callable[[Chain], Chain]
+) -> dict[tuple[int, int], Matrix]:
+    """Jacobians of the remaining vertices: {(from, to): matrix}. Chains are simplified when they meet."""
     graph: dict[tuple[int, int], Chain] = dict(edges)
     for v in strategy.order(inner):
         into = [(a, b) for a, b in graph if b == v]
@@ -51,13 +54,16 @@ def eliminate(edges: Edges, inner: Sequence[int], strategy: Strategy) -> dict[tu
         right = {e: _shared(graph.pop(e), out, strategy) for e in into}
         for (_, to), outer in left.items():
             for (source, _), inner_chain in right.items():
-                accumulate(graph, (source, to), (*outer, *inner_chain), strategy)
+                accumulate(graph, (source, to), simplified((*outer, *inner_chain)), strategy)
     return {edge: strategy.multiply(chain) for edge, chain in graph.items()}
 
 
-def _shared(chain: Chain, users: Iterable[object], strategy: Strategy) -> Chain:
-    """Multiply out what several products will use."""
-    return (strategy.multiply(chain),) if len(list(users)) > 1 else chain
+def _shared(chain: Chain, users: Sequence[object], strategy: Strategy) -> Chain:
+    """Multiply out the numbers that several products will use; what may still cancel stays as it is."""
+    if len(users) < 2:
+        return chain
+    runs = [(numbers, tuple(run)) for numbers, run in groupby(chain, key=lambda f: isinstance(f, tuple))]
+    return tuple(f for numbers, run in runs for f in ((strategy.multiply(run),) if numbers else run))
 
 
 def accumulate(

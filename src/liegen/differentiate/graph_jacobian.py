@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from liegen.algebra.casadi_backend import ca
 from liegen.algebra.linear import Chain, Matrix, eye, zeros
@@ -12,6 +13,8 @@ from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
 from liegen.trace import Graph, topological
 
+from .cancel import cancelled
+from .elements import elements
 from .eliminate import Strategy, accumulate, eliminate
 from .local import local_blocks, symbols
 
@@ -76,7 +79,8 @@ def jacobians(
             edges[sources[v], v] = chart.columns(values.scalars[v])
     begun = {v for v, source in sources.items() if v == source}
     inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun]
-    products = eliminate(edges, inner, strategy)
+    known = elements(graph.nodes(), values.scalars)
+    products = eliminate(edges, inner, strategy, partial(cancelled, elements=known))
     return {
         (name, p.name): products.get((sources[v], sinks[name]))
         or zeros(node.manifold.form.dim, p.manifold.form.dim)

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
-from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
+from liegen.algebra.factors import Adjoint, Letter, Passing, Turn, Word
+from liegen.algebra.linear import Chain, Matrix, Vector, beside, eye, negate, negated, product
 
 Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
@@ -158,6 +159,14 @@ class GroupForm(ManifoldForm):
         """Ad of a^-1."""
         return self.adjoint(self.inverse(a))
 
+    def Ad(self, a: Coords) -> Chain:
+        """``adjoint`` as one factor that knows its element."""
+        return (Adjoint(self.name, tuple(a), False, self.adjoint(a)),)
+
+    def Ad_inverse(self, a: Coords) -> Chain:
+        """``adjoint_inverse`` as one factor that knows its element."""
+        return (Adjoint(self.name, tuple(a), True, self.adjoint_inverse(a)),)
+
     def Jl(self, d: Coords) -> Matrix:
         """Left Jacobian, Jl(d) = Jr(-d) (micro Lie, eq. 76)."""
         return self.Jr(negate(d))
@@ -176,26 +185,26 @@ class GroupForm(ManifoldForm):
 
     def retract_blocks(self) -> Rule:
         """d/dx = Ad(exp(d))^-1, d/dd = Jr(d) (micro Lie, eq. 82-83)."""
-        return lambda _, _x, d: (self.adjoint_inverse(self.exp(d)), (self.Jr(d),))
+        return lambda _, _x, d: (self.Ad_inverse(self.exp(d)), (self.Jr(d),))
 
     def local_blocks(self) -> Rule:
         """d/dy = Jr^-1(r), d/dx = -Jl^-1(r) (micro Lie, eq. 79, 84)."""
         return lambda r, _x, _y: (
-            (_negative(self.Jl_inv(r, principal=True)),),
+            negated((self.Jl_inv(r, principal=True),)),
             (self.Jr_inv(r, principal=True),),
         )
 
     def compose_blocks(self) -> Rule:
         """d/da = Ad(b^-1), d/db = I (micro Lie, eq. 63-64)."""
-        return lambda _, _a, b: (self.adjoint_inverse(b), (eye(self.dim),))
+        return lambda _, _a, b: (self.Ad_inverse(b), (eye(self.dim),))
 
     def inverse_blocks(self) -> Rule:
         """d/da = -Ad(a) (micro Lie, eq. 62)."""
-        return lambda _, a: (_negated(self.adjoint(a)),)
+        return lambda _, a: (negated(self.Ad(a)),)
 
     def between_blocks(self) -> Rule:
         """d/da = -Ad(c^-1) with c = a^-1 b, d/db = I (micro Lie, eq. 81)."""
-        return lambda c, _a, _b: (_negated(self.adjoint_inverse(c)), (eye(self.dim),))
+        return lambda c, _a, _b: (negated(self.Ad_inverse(c)), (eye(self.dim),))
 
     def exp_blocks(self) -> Rule:
         """d/dd = Jr(d)."""
@@ -208,14 +217,6 @@ class GroupForm(ManifoldForm):
     def adjoint_matrix(self, a: Coords) -> Matrix:
         """Ad_a multiplied out."""
         return product(self.adjoint(a))
-
-
-def _negative(a: Matrix) -> Matrix:
-    return tuple(negate(row) for row in a)
-
-
-def _negated(chain: Chain) -> Chain:
-    return (_negative(chain[0]), *chain[1:])
 
 
 class PoseForm(GroupForm):
@@ -245,6 +246,28 @@ class PoseForm(GroupForm):
     def in_order(self, rotation: Matrix, translation: Matrix) -> tuple[Matrix, Matrix]:
         """Columns (or rows) of both parts in the order of this group's tangent."""
         return (rotation, translation) if self.rotation_first else (translation, rotation)
+
+    def turned(self, x: Coords, *, inverse: bool = False) -> Chain:
+        """R, or R^T, of a pose, by which vectors change their frame."""
+        return self.rotation.turned(self.rotation_of(x), inverse=inverse)
+
+    def lever(self, x: Coords, body: Coords, world: Coords) -> Chain:
+        """d(exp(e) v)/de at 0 by a pose's perturbation, v seen from the body; ``world`` is R v.
+
+        [G(v), I] diag(R^T, R^T) = R^T [G(R v), I]; in the plane, where turns commute, without the first R^T.
+        """
+        rotation = self.rotation
+        back = rotation.letter(self.rotation_of(x), inverse=True)
+        first, then = (
+            (beside(*self.in_order(rotation.generator(v), eye(rotation.space))),) for v in (body, world)
+        )
+        return (Passing(first, self.turn(rotation.word(back), (back,)), _alone(back, rotation.space), then),)
+
+    def turn(self, rotation: Word, translation: Word) -> Turn:
+        """Words that turn the coordinates of rotation and translation."""
+        pairs = ((rotation, self.rotation.dim), (translation, self.rotation.space))
+        ordered = pairs if self.rotation_first else pairs[::-1]
+        return Turn((ordered[0][0], ordered[1][0]), (ordered[0][1], ordered[1][1]))
 
     def identity(self) -> Vector:
         """No rotation, no translation."""
@@ -294,6 +317,29 @@ class RotationForm(GroupForm):
     def rotate(self, a: Coords, v: Coords) -> Vector:
         """R v, the cheapest way for a single vector."""
 
+    def letter(self, a: Coords, *, inverse: bool = False) -> Letter:
+        """The rotation, or its inverse, as a letter of words."""
+        return Letter(tuple(a), self.matrix(a), inverse)
+
+    def turned(self, a: Coords, *, inverse: bool = False) -> Chain:
+        """R, or R^T, as a factor that knows its rotation."""
+        return (_alone(self.letter(a, inverse=inverse), self.space),)
+
+    def word(self, letter: Letter) -> Word:
+        """How a rotation turns tangent vectors: not at all in the plane."""
+        return (letter,) if self.space > 2 else ()
+
+    def lever(self, a: Coords, body: Coords, world: Coords) -> Chain:
+        """d(exp(e) v)/de at 0, v seen from the body; ``world`` is R v: G(v) R^T = R^T G(R v)."""
+        back = self.letter(a, inverse=True)
+        taken = Turn((self.word(back),), (self.dim,))
+        first, then = self.generator(body), self.generator(world)
+        return (Passing((first,), taken, _alone(back, self.space), (then,)),)
+
     @abstractmethod
     def generator(self, v: Coords) -> Matrix:
         """d(exp(e) v)/de at 0, space x dim."""
+
+
+def _alone(letter: Letter, space: int) -> Turn:
+    return Turn(((letter,),), (space,))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from liegen.algebra import Scalar, lt, select
-from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, negate, scale, skew
+from liegen.algebra.factors import Letter, Turn
+from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, negate, scale, skew, transpose
 from liegen.coefficients import inverse_jacobian, log_factor, stumpff
 
 from .form import Coords, RotationForm
@@ -61,7 +62,12 @@ class SO3Form(RotationForm):
         return scale(log_factor(w * sign) * sign, v)
 
     def adjoint(self, a: Coords) -> Chain:
-        return (self.matrix(a),)
+        return self.turned(a)
+
+    def adjoint_inverse(self, a: Coords) -> Chain:
+        # the matrix of q^-1 has the same entries as R^T, but its signs cost a few operations less in between
+        letter = Letter(tuple(a), transpose(self.matrix(self.inverse(a))), inverse=True)
+        return (Turn(((letter,),), (3,)),)
 
     def Jr(self, d: Coords) -> Matrix:
         """I - c2 [d]x + c3 [d]x^2 (micro Lie, eq. 143)."""
