@@ -21,7 +21,7 @@ from .local import local_blocks, symbols
 
 @dataclass(frozen=True, eq=False)
 class Expressions:
-    """The graph on SX: symbols of each parameter, and the scalars of every node by its identity."""
+    """The graph on SX: symbols of what is stored of each parameter, and every node's scalars by identity."""
 
     inputs: Mapping[str, Coordinates]
     scalars: Mapping[int, Coordinates]
@@ -29,8 +29,10 @@ class Expressions:
 
 def expressions(graph: Graph) -> Expressions:
     """Evaluate every node on fresh symbols of the parameters."""
-    inputs = {p.name: symbols(f"{p.name}_", p.manifold.form.size) for p in graph.parameters}
-    scalars: dict[int, Coordinates] = {id(p.node): inputs[p.name] for p in graph.parameters}
+    inputs = {p.name: symbols(f"{p.name}_", p.storage.size) for p in graph.parameters}
+    scalars: dict[int, Coordinates] = {
+        id(p.node): p.storage.taken(inputs[p.name], normalise=graph.normalise) for p in graph.parameters
+    }
     for node in graph.nodes():
         if id(node) in scalars:
             continue

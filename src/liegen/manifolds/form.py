@@ -38,6 +38,23 @@ Rule = (
 )
 
 
+class Turned(tuple[Scalar, ...]):
+    """Scalars of an element that begin with a rotation whose matrix is known already."""
+
+    rotation_matrix: Matrix
+
+    def __new__(cls, scalars: Coords, rotation_matrix: Matrix) -> Turned:
+        """The scalars, and the matrix that they are another form of."""
+        made = super().__new__(cls, scalars)
+        made.rotation_matrix = rotation_matrix
+        return made
+
+
+def known_matrix(a: Coords) -> Matrix | None:
+    """The rotation's matrix where it need not be computed."""
+    return a.rotation_matrix if isinstance(a, Turned) else None
+
+
 class Source(Protocol):
     """A source of random numbers, as :class:`liegen.samples.Draw` is."""
 
@@ -237,7 +254,8 @@ class PoseForm(GroupForm):
 
     def rotation_of(self, x: Coords) -> Vector:
         """The rotation's coordinates."""
-        return tuple(x[: self.rotation.size])
+        known, q = known_matrix(x), tuple(x[: self.rotation.size])
+        return q if known is None else Turned(q, known)
 
     def translation_of(self, x: Coords) -> Vector:
         """The translation."""
