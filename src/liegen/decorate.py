@@ -61,10 +61,10 @@ def factor(
     ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
     not declare frames. ``chart`` is that of ``local`` and ``retract`` and of the Jacobians' columns: the name
     of a preset (``"sophus"``) or a ``liegen.Chart``; or charts of the columns of single variables,
-    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3. ``layout`` is what rotations and poses are stored as
-    where generated code is called: a name (``"wxyz"``, ``"4x4"``, ``"ceres"``), a ``liegen.Layout``, or layouts
-    of single arguments; Jacobians do not depend on it. ``normalise`` brings quaternions, (cos, sin) and
-    directions of the arguments to unit length as they are read.
+    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3. ``layout`` is what rotations and poses are stored
+    as where generated code is called: a name (``"wxyz"``, ``"4x4"``, ``"ceres"``), a ``liegen.Layout``, or
+    layouts of single arguments; Jacobians do not depend on it. ``normalise`` brings quaternions, (cos, sin)
+    and directions of the arguments to unit length as they are read.
 
     ``noise`` ("full", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
     covariance^-1, in the frame of the residual: an upper triangular matrix (..., m, m) whose lower part is

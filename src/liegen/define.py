@@ -86,8 +86,8 @@ class Function(Generic[P, T]):
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> T:
         """Inline into the formula that is being traced, or evaluate on numbers.
 
-        Numbers are typed values or arrays of shape (..., n), in the factor's layout; the result is typed. Raises
-        DefinitionError for missing, unknown or mismatched arguments.
+        Numbers are typed values or arrays of shape (..., n), in the factor's layout; the result is typed.
+        Raises DefinitionError for missing, unknown or mismatched arguments.
         """
         values = self._bound(args, kwargs)
         if any(v.traced for v in values.values()):
@@ -182,8 +182,8 @@ class Function(Generic[P, T]):
         numbers = np.asarray(array, dtype=np.float64)
         if numbers.ndim == 0 or numbers.shape[-1] != stored.size:
             raise DefinitionError(
-                f"{here()}: {self.name}: argument {s.name!r}: an array of shape (..., {stored.size}) is needed "
-                f"({', '.join(stored.names)}), this one has shape {numbers.shape}"
+                f"{here()}: {self.name}: argument {s.name!r}: an array of shape (..., {stored.size}) is "
+                f"needed ({', '.join(stored.names)}), this one has shape {numbers.shape}"
             )
         return s.manifold.holding(stored.read([numbers[..., k][()] for k in range(stored.size)]))
 
@@ -281,7 +281,7 @@ class Function(Generic[P, T]):
         return self if chart is None or self.chart is not None else replace(self, chart=chart)
 
     def in_layout(self, layout: LayoutLike | None, *, normalise: bool = False) -> Function[P, T]:
-        """The same formula on other stored numbers, by name or as a ``liegen.Layout``; one that it states stays.
+        """The same formula on other stored numbers, by name or as a ``liegen.Layout``; a stated one stays.
 
         ``normalise`` brings quaternions, (cos, sin) and directions of the arguments to unit length. Raises
         DefinitionError for a layout that does not exist.

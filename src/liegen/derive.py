@@ -13,8 +13,8 @@ from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import GTSAM, Preset, form_chart
 from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.differentiate.local import symbols
-from liegen.layouts import OWN, Stored, storage
 from liegen.kernel import Argument, Kernel, Output, PassCount
+from liegen.layouts import OWN, Stored, storage
 from liegen.manifolds import Manifold, ManifoldForm, MatrixValue, Vector
 from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program

@@ -1,4 +1,4 @@
-"""``Layout``: the choices that the storage of rotations and poses consists of, and ``Stored``: those of a library."""
+"""``Layout``: the choices that the storage of rotations and poses consists of, and ``Stored``: named ones."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Layout:
     rotation of the plane: (cos, sin), the angle [rad], or the 2x2 matrix. ``pose``: parts, the rotation so
     stored and the translation, ``first`` says which comes first; or the matrix [[R, t], [0, 1]] (4x4, in the
     plane 3x3), or its upper rows [R, t] (3x4, in the plane 2x3). ``order``: matrices row by row, as arrays of
-    two dimensions, or column by column, as flat arrays. Extended and Galilean poses are the rotation so stored,
-    then the rest as ever. Raises DefinitionError for any other choice.
+    two dimensions, or column by column, as flat arrays. Extended and Galilean poses are the rotation so
+    stored, then the rest as ever. Raises DefinitionError for any other choice.
     """
 
     rotation: Rotation = "xyzw"

@@ -1,4 +1,4 @@
-"""The named layouts (docs/conventions.md has the same list). Those of libraries have the names of their charts."""
+"""The named layouts (docs/conventions.md lists them); those of libraries have the names of their charts."""
 
 from __future__ import annotations
 
@@ -33,12 +33,14 @@ LAYOUTS: Mapping[str, Stored] = {
         _everywhere("3x4", _AFFINE, "[R, t] row by row (2x3 in the plane); R for rotations."),
         _everywhere("3x4-col", Layout("matrix", "matrix", "3x4", "column"), "The same, column by column."),
         _everywhere("gtsam", _HOMOGENEOUS, "What matrix() of Rot3, Pose3, Rot2 and Pose2 returns in Python."),
-        _everywhere("symforce", Layout(), "to_storage(): quaternion (x, y, z, w), position; (cos, sin, x, y)."),
+        _everywhere("symforce", Layout(),
+                    "to_storage(): quaternion (x, y, z, w), position; (cos, sin, x, y)."),
         _everywhere("sophus", Layout(), "data(): quaternion (x, y, z, w), translation; (cos, sin, x, y)."),
-        _everywhere("manif", _TRANSLATION_FIRST, "coeffs(): translation, quaternion (x, y, z, w) or (cos, sin)."),
+        _everywhere("manif", _TRANSLATION_FIRST,
+                    "coeffs(): translation, quaternion (x, y, z, w) or (cos, sin)."),
         Stored("ceres", Layout("wxyz"), _YAW,
-               "Blocks of ProductManifold<QuaternionManifold, EuclideanManifold<3>>: quaternion (w, x, y, z), "
-               "position; in the plane x, y, yaw."),
+               "Blocks of ProductManifold<QuaternionManifold, EuclideanManifold<3>>: quaternion "
+               "(w, x, y, z), position; in the plane x, y, yaw."),
         Stored("g2o", _TRANSLATION_FIRST, _YAW,
                "toVectorQT and .g2o files: x, y, z, quaternion (x, y, z, w); in the plane x, y, angle."),
         Stored("ros", _TRANSLATION_FIRST, _YAW,
@@ -58,4 +60,5 @@ def stored(layout: object, what: str) -> Stored:
         return Stored(layout.description, layout, layout)
     if isinstance(layout, str) and layout in LAYOUTS:
         return LAYOUTS[layout]
-    raise DefinitionError(f"{what}: unknown layout {layout!r}; one of {', '.join(LAYOUTS)}, or a liegen.Layout")
+    known = ", ".join(LAYOUTS)
+    raise DefinitionError(f"{what}: unknown layout {layout!r}; one of {known}, or a liegen.Layout")

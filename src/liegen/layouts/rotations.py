@@ -31,9 +31,9 @@ class Numbers:
 def quaternion_of(R: Matrix) -> Vector:
     """The quaternion (x, y, z, w) of a rotation matrix, as accurate at half a turn as anywhere.
 
-    4 q q^T is linear in R, and each row of it is q times four times one of its entries. The row with the largest
-    diagonal entry is taken: that is at least 1, so nothing is lost or divided by nothing. Source: Shepperd,
-    "Quaternion from rotation matrix" (1978).
+    4 q q^T is linear in R, and each row of it is q times four times one of its entries. The row with the
+    largest diagonal entry is taken: that is at least 1, so nothing is lost and nothing divided by 0. Source:
+    Shepperd, "Quaternion from rotation matrix" (1978).
     """
     (a, b, c), (d, e, f), (g, h, i) = R
     xy, xz, yz, xw, yw, zw = b + d, c + g, f + h, h - f, c - g, d - b

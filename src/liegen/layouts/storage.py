@@ -153,11 +153,19 @@ def _by_columns(found: Storage) -> Storage:
     rows, columns = found.shape
     order = [columns * i + j for j in range(columns) for i in range(rows)]
     back = [order.index(k) for k in range(len(order))]
+
+    def read(x: Coords) -> Vector:
+        return found.read([x[k] for k in back])
+
+    def write(x: Coords) -> Vector:
+        stored = found.write(x)
+        return tuple(stored[k] for k in order)
+
     return replace(
         found,
         names=tuple(found.names[k] for k in order),
-        read=lambda x: found.read([x[k] for k in back]),
-        write=lambda x: tuple((y := found.write(x))[k] for k in order),
+        read=read,
+        write=write,
         text=f"{found.text}, column by column",
         shape=(len(order),),
     )
@@ -172,9 +180,7 @@ def _product(form: ProductForm, stored: Stored) -> Storage:
         for part, own in zip(parts, form.stored, strict=True)
         for u in part.units
     ]
-    changed = [
-        f"{n} as {part.text}" for n, part in zip(form.names, parts, strict=True) if not part.own
-    ]
+    changed = [f"{n} as {part.text}" for n, part in zip(form.names, parts, strict=True) if not part.own]
     return Storage(
         tuple(f"{n}_{s}" for n, part in zip(form.names, parts, strict=True) for s in part.names),
         lambda x: _joined([part.read(x[place]) for part, place in zip(parts, places, strict=True)]),

@@ -19,13 +19,13 @@ def in_layouts(graph: Graph, layout: LayoutLike | None, *, normalise: bool = Fal
     """The same factor with arguments and outputs in a layout.
 
     One layout is that of everything; a mapping gives layouts to single arguments, the rest stays liegen's
-    own. ``normalise``: rotations and directions of the arguments are brought to unit length as they are read.
-    Raises DefinitionError for a layout that does not exist, and in a mapping for what is no argument or has no
-    rotation.
+    own. ``normalise``: rotations and directions of the arguments are brought to unit length as they are
+    read. Raises DefinitionError for a layout that does not exist, and in a mapping for what is no argument or
+    has no rotation.
     """
     what = f"{graph.site}: {graph.name}"
     common = OWN if layout is None or isinstance(layout, Mapping) else stored(layout, what)
-    single = layout if isinstance(layout, Mapping) else {}
+    single: Mapping[str, str | Layout | Stored] = layout if isinstance(layout, Mapping) else {}
     own = {name: stored(value, f"{what}: layout of {name!r}") for name, value in single.items()}
     forms = {p.name: p.manifold.form for p in graph.parameters}
     for name in own:
