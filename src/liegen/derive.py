@@ -138,7 +138,7 @@ def _conventions(graph: Graph) -> tuple[str, ...]:
     used += [(p.manifold.form, p.chart, p.layout) for p in graph.parameters]
     used += [(m.form, graph.chart, graph.layout) for m in results]
     used += [
-        (node.operands[0].manifold.form, graph.chart, OWN)
+        (node.operands[0].manifold.form, graph.chart, graph.layout)
         for node in graph.nodes()
         if graph.chart is not GTSAM and node.operation.name in ("local", "retract")
     ]

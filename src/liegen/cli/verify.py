@@ -111,6 +111,7 @@ def _print(report: Report, seconds: float) -> None:
             click.echo(line)
     for line in _skipped(report.factors):
         click.echo(line)
+    _print_off_unit(report.factors)
     click.echo()
     failed = [f.factor for f in report.factors if not f.passed]
     total, which = count(len(report.factors), "factor"), f": {', '.join(failed)}" if failed else ""
@@ -120,6 +121,20 @@ def _print(report: Report, seconds: float) -> None:
         click.echo(f"C was compiled with {report.compiler}")
     else:
         click.echo("C was not checked: there is no C compiler (install gcc or clang, or set CC)")
+
+
+def _print_off_unit(factors: Iterable[FactorReport]) -> None:
+    """What arguments off unit length do, as the code is and with --normalise."""
+    measured = [f for f in factors if f.off_unit]
+    if not measured:
+        return
+    click.echo("\nLargest error, relative to max(1, s), for quaternions and the like off unit length:")
+    offs = [f"off by {o.off:g}" for o in measured[0].off_unit]
+    table(
+        ("factor", *(title for off in offs for title in (off, "normalised"))),
+        [(f.factor, *(f"{x:.1e}" for o in f.off_unit for x in (o.as_is, o.normalised))) for f in measured],
+        right=range(1, 1 + 2 * len(offs)),
+    )
 
 
 def _row(factor: FactorReport) -> tuple[str, ...]:

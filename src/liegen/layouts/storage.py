@@ -25,7 +25,8 @@ class Storage:
 
     ``names`` and ``shape`` are those of the stored scalars, ``text`` says what they are; empty for the
     manifold's own. ``quaternions``: where each begins. ``units``: slices of the manifold's own scalars that
-    should have unit length and need not have it as they are read.
+    should have unit length and need not have it as they are read; ``lengths``: the places of the stored
+    scalars that say so, of a quaternion, a (cos, sin), a direction, or a rotation matrix.
     """
 
     names: tuple[str, ...]
@@ -35,6 +36,7 @@ class Storage:
     shape: tuple[int, ...] = ()
     quaternions: tuple[int, ...] = ()
     units: tuple[slice, ...] = ()
+    lengths: tuple[tuple[int, ...], ...] = ()
 
     @property
     def size(self) -> int:
@@ -61,7 +63,9 @@ def storage(form: ManifoldForm, stored: Stored) -> Storage:
     """A manifold in a layout; manifolds without rotations are stored as ever."""
     if isinstance(form, ProductForm):
         return _product(form, stored)
-    plain = Storage(form.storage, tuple, tuple, "", form.shape, form.quaternions, _units(form))
+    units = _units(form)
+    lengths = tuple(tuple(range(u.start, u.stop)) for u in units)
+    plain = Storage(form.storage, tuple, tuple, "", form.shape, form.quaternions, units, lengths)
     rotation = _rotation_of(form)
     if rotation is None:
         return plain
@@ -118,6 +122,7 @@ def _parts(form: ManifoldForm, rotation: RotationForm, own: Numbers, *, rotation
         (n + k,),
         ((0 if rotation_first else k),) if own.quaternion else (),
         () if own.exact else (slice(0, m),),
+        () if own.exact else (tuple(range(n)) if rotation_first else tuple(range(k, k + n)),),
     )
 
 
@@ -145,7 +150,8 @@ def _homogeneous(form: PoseForm, own: Numbers, whole: bool) -> Storage:
 
     height = width if whole else n
     text = f"{height}x{width} matrix " + ("[[R, t], [0, 1]]" if whole else "[R, t]")
-    return Storage((*names, *bottom), read, write, text, (height, width), (), (slice(0, m),))
+    turning = tuple(width * i + j for i in range(n) for j in range(n))
+    return Storage((*names, *bottom), read, write, text, (height, width), (), (slice(0, m),), (turning,))
 
 
 def _by_columns(found: Storage) -> Storage:
@@ -168,6 +174,7 @@ def _by_columns(found: Storage) -> Storage:
         write=write,
         text=f"{found.text}, column by column",
         shape=(len(order),),
+        lengths=tuple(tuple(back[k] for k in places) for places in found.lengths),
     )
 
 
@@ -189,6 +196,11 @@ def _product(form: ProductForm, stored: Stored) -> Storage:
         (sum(part.size for part in parts),),
         tuple(p.start + q for part, p in zip(parts, places, strict=True) for q in part.quaternions),
         tuple(units),
+        tuple(
+            tuple(p.start + k for k in length)
+            for part, p in zip(parts, places, strict=True)
+            for length in part.lengths
+        ),
     )
 
 
