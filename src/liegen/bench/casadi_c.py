@@ -90,7 +90,7 @@ def _inputs(function: Function[..., object], calls: int, seed: int) -> NDArray[n
     sampler = function.sampler or default_sampler({p.name: p.manifold for p in function.graph.parameters})
     rows = [sampler(draw, Case("random")) for _ in range(calls)]
     stored = {p.name: p.storage for p in function.graph.parameters}
-    return np.array([[float(x) for name, s in stored.items() for x in s.write(row[name].coords)] for row in rows])
+    return np.array([[x for name, s in stored.items() for x in s.write(row[name].coords)] for row in rows])
 
 
 def _variants(function: Function[..., object]) -> tuple[Variant, ...]:
