@@ -8,7 +8,7 @@ import pytest
 
 from liegen import SE3, Chart, function
 from liegen.algebra.factors import Adjoint, Turn
-from liegen.algebra.linear import eye, plain, product_from_left
+from liegen.algebra.linear import eye, matscale, plain, product_from_left
 from liegen.charts import PRESETS
 from liegen.differentiate import expressions
 from liegen.differentiate.cancel import cancelled
@@ -48,7 +48,7 @@ CHAINS = {
     "R(c) R(y)^T = R(x)^T": ((turn(C), turn(Y, inverse=True)), 1),
     "passing a choice of parts": ((*R.turned(X[:4]), eye(6)[3:], turn(X, inverse=True)), 0),
     "passing a scaled order": (
-        (turn(X), tuple(tuple(2 * e for e in row) for row in (*eye(6)[3:], *eye(6)[:3])), turn(X, inverse=True)),
+        (turn(X), matscale(2, (*eye(6)[3:], *eye(6)[:3])), turn(X, inverse=True)),
         0,
     ),
     "passing a lever": ((*R.turned(X[:4]), *LEVER, turn(X, inverse=True)), 0),

@@ -94,15 +94,8 @@ def exact_matrix(q):
 
 def quaternions():
     rng = np.random.default_rng(7)
-    axes = [
-        *np.eye(3),
-        *(-np.eye(3)),
-        *rng.normal(size=(40, 3)),
-        [1, 1, 0],
-        [0, -1, 1],
-        [1, 1, 1],
-        [1e-9, 1, 0],
-    ]
+    axes = [*np.eye(3), *(-np.eye(3)), *rng.normal(size=(40, 3))]
+    axes += [[1, 1, 0], [0, -1, 1], [1, 1, 1], [1e-9, 1, 0]]
     for axis in axes:
         u = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
         for angle in (0, 1e-300, 1e-12, 1e-3, 1, 2 * np.pi / 3, np.pi - 1e-3, np.pi - 1e-8, np.pi):
@@ -131,9 +124,7 @@ def test_own_storage_is_left_alone():
 
 
 def test_what_does_not_exist_is_refused():
-    with pytest.raises(
-        DefinitionError, match=r"Layout\(rotation='euler'\): rotation is one of 'xyzw', 'wxyz'"
-    ):
+    with pytest.raises(DefinitionError, match=r"rotation='euler'\): rotation is one of 'xyzw', 'wxyz'"):
         Layout(rotation="euler")
     with pytest.raises(DefinitionError, match="f: unknown layout 'drake'; one of xyzw, wxyz, matrix"):
         stored("drake", "f")

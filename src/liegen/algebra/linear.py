@@ -214,7 +214,8 @@ def is_sign(a: Matrix | Factor) -> bool:
 
 
 def _is_structure(a: Matrix) -> bool:
-    return all(is_structural(x) for row in a for x in row)
+    """Whether there are entries (conditions have empty blocks), and all of them are structural."""
+    return bool(a) and all(is_structural(x) for row in a for x in row)
 
 
 def product_from_left(chain: Chain) -> Matrix:
