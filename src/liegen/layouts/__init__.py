@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from .layout import Layout as Layout
 from .layout import Stored as Stored
+from .of_manifolds import Storage as Storage
+from .of_manifolds import storage as storage
 from .presets import LAYOUTS as LAYOUTS
 from .presets import OWN as OWN
 from .presets import stored as stored
-from .storage import Storage as Storage
-from .storage import storage as storage

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from liegen.algebra import Scalar, atan2, cos, lt, select, sin, sqrt
 from liegen.algebra.linear import Matrix, Vector
-from liegen.manifolds.form import Coords, RotationForm, Turned
+from liegen.manifolds.form import Coords, RotationForm
+from liegen.manifolds.turning import Turned
 
 from .layout import Layout
 

@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
-from liegen.algebra.factors import Adjoint, Letter, Passing, Turn, Word
-from liegen.algebra.linear import Chain, Matrix, Vector, beside, eye, negate, negated, product
+from liegen.algebra.factors import Adjoint
+from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, negated, product
+
+from .turning import PoseFactors, RotationFactors, Turned, known_matrix
 
 Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
@@ -36,23 +38,6 @@ Rule = (
     | Callable[[Any, Any, Any, Any], Blocks]
     | Callable[[Any, Any, Any, Any, Any], Blocks]
 )
-
-
-class Turned(tuple[Scalar, ...]):
-    """Scalars of an element that begin with a rotation whose matrix is known already."""
-
-    rotation_matrix: Matrix
-
-    def __new__(cls, scalars: Coords, rotation_matrix: Matrix) -> Turned:
-        """The scalars, and the matrix that they are another form of."""
-        made = super().__new__(cls, scalars)
-        made.rotation_matrix = rotation_matrix
-        return made
-
-
-def known_matrix(a: Coords) -> Matrix | None:
-    """The rotation's matrix where it need not be computed."""
-    return a.rotation_matrix if isinstance(a, Turned) else None
 
 
 class Source(Protocol):
@@ -236,7 +221,7 @@ class GroupForm(ManifoldForm):
         return product(self.adjoint(a))
 
 
-class PoseForm(GroupForm):
+class PoseForm(GroupForm, PoseFactors):
     """A semidirect product of a rotation and a translation: x = (R, t), x p = R p + t."""
 
     turns = True
@@ -264,28 +249,6 @@ class PoseForm(GroupForm):
     def in_order(self, rotation: Matrix, translation: Matrix) -> tuple[Matrix, Matrix]:
         """Columns (or rows) of both parts in the order of this group's tangent."""
         return (rotation, translation) if self.rotation_first else (translation, rotation)
-
-    def turned(self, x: Coords, *, inverse: bool = False) -> Chain:
-        """R, or R^T, of a pose, by which vectors change their frame."""
-        return self.rotation.turned(self.rotation_of(x), inverse=inverse)
-
-    def lever(self, x: Coords, body: Coords, world: Coords) -> Chain:
-        """d(exp(e) v)/de at 0 by a pose's perturbation, v seen from the body; ``world`` is R v.
-
-        [G(v), I] diag(R^T, R^T) = R^T [G(R v), I]; in the plane, where turns commute, without the first R^T.
-        """
-        rotation = self.rotation
-        back = rotation.letter(self.rotation_of(x), inverse=True)
-        first, then = (
-            (beside(*self.in_order(rotation.generator(v), eye(rotation.space))),) for v in (body, world)
-        )
-        return (Passing(first, self.turn(rotation.word(back), (back,)), _alone(back, rotation.space), then),)
-
-    def turn(self, rotation: Word, translation: Word) -> Turn:
-        """Words that turn the coordinates of rotation and translation."""
-        pairs = ((rotation, self.rotation.dim), (translation, self.rotation.space))
-        ordered = pairs if self.rotation_first else pairs[::-1]
-        return Turn((ordered[0][0], ordered[1][0]), (ordered[0][1], ordered[1][1]))
 
     def identity(self) -> Vector:
         """No rotation, no translation."""
@@ -325,7 +288,7 @@ class PoseForm(GroupForm):
         return (*rows, (0,) * self.rotation.space + (1,))
 
 
-class RotationForm(GroupForm):
+class RotationForm(GroupForm, RotationFactors):
     """A group of rotations of the plane or of space."""
 
     turns = True
@@ -335,29 +298,6 @@ class RotationForm(GroupForm):
     def rotate(self, a: Coords, v: Coords) -> Vector:
         """R v, the cheapest way for a single vector."""
 
-    def letter(self, a: Coords, *, inverse: bool = False) -> Letter:
-        """The rotation, or its inverse, as a letter of words."""
-        return Letter(tuple(a), self.matrix(a), inverse)
-
-    def turned(self, a: Coords, *, inverse: bool = False) -> Chain:
-        """R, or R^T, as a factor that knows its rotation."""
-        return (_alone(self.letter(a, inverse=inverse), self.space),)
-
-    def word(self, letter: Letter) -> Word:
-        """How a rotation turns tangent vectors: not at all in the plane."""
-        return (letter,) if self.space > 2 else ()
-
-    def lever(self, a: Coords, body: Coords, world: Coords) -> Chain:
-        """d(exp(e) v)/de at 0, v seen from the body; ``world`` is R v: G(v) R^T = R^T G(R v)."""
-        back = self.letter(a, inverse=True)
-        taken = Turn((self.word(back),), (self.dim,))
-        first, then = self.generator(body), self.generator(world)
-        return (Passing((first,), taken, _alone(back, self.space), (then,)),)
-
     @abstractmethod
     def generator(self, v: Coords) -> Matrix:
         """d(exp(e) v)/de at 0, space x dim."""
-
-
-def _alone(letter: Letter, space: int) -> Turn:
-    return Turn(((letter,),), (space,))

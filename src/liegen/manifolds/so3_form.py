@@ -7,7 +7,8 @@ from liegen.algebra.factors import Letter, Turn
 from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, matvec, negate, scale, skew, transpose
 from liegen.coefficients import inverse_jacobian, log_factor, stumpff
 
-from .form import Coords, RotationForm, Turned, known_matrix
+from .form import Coords, RotationForm
+from .turning import Turned, known_matrix
 
 
 def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:

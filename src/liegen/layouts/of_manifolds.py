@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 
 from liegen.algebra.linear import Vector
 from liegen.manifolds import ManifoldForm
-from liegen.manifolds.form import Coords, PoseForm, RotationForm, Turned, known_matrix
+from liegen.manifolds.form import Coords, PoseForm, RotationForm
 from liegen.manifolds.gal3_form import Gal3Form
 from liegen.manifolds.product_form import ProductForm, slices
 from liegen.manifolds.s2_form import S2Form
 from liegen.manifolds.se23_form import SE23Form
+from liegen.manifolds.turning import Turned, known_matrix
 
 from .layout import Layout, Stored
 from .rotations import Numbers, numbers, unit
