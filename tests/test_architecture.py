@@ -11,9 +11,9 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
-    "noise", "program", "kernel", "choice", "derive", "define", "decorate", "samples", "library",
-    "modules", "sources", "emit",
+    "errors", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
+    "differentiate", "noise", "program", "kernel", "choice", "derive", "define", "decorate", "samples",
+    "library", "modules", "sources", "emit",
     "native", "verify", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.

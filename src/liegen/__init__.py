@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .define import Function as Function
     from .errors import DefinitionError as DefinitionError
     from .errors import LiegenError as LiegenError
+    from .layouts import Layout as Layout
     from .manifolds import R1 as R1
     from .manifolds import R2 as R2
     from .manifolds import R3 as R3
@@ -67,6 +68,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
     ".decorate": ("factor", "function"),
     ".define": ("Function",),
     ".errors": ("DefinitionError", "LiegenError"),
+    ".layouts": ("Layout",),
     ".manifolds": (
         "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE23", "SE3", "SO2", "SO3",
         "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Gal3", "NavState", "Product", "Vector",

@@ -13,7 +13,7 @@ from liegen.manifolds import Manifold, Vector
 from liegen.manifolds.node import here
 from liegen.noise import Weighting
 from liegen.noise import weighting as read_weighting
-from liegen.trace import ChartLike, Outputs, signature
+from liegen.trace import ChartLike, LayoutLike, Outputs, signature
 
 P = ParamSpec("P")
 S = TypeVar("S", bound="Manifold | Outputs")
@@ -23,7 +23,12 @@ S = TypeVar("S", bound="Manifold | Outputs")
 def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
 @overload
 def factor(
-    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
+    *,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+    layout: LayoutLike | None = None,
+    normalise: bool = False,
 ) -> Callable[[Callable[P, Vector]], Function[P, Vector]]: ...
 @overload
 def factor(
@@ -34,6 +39,8 @@ def factor(
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
+    layout: LayoutLike | None = None,
+    normalise: bool = False,
 ) -> Callable[[Callable[P, Vector]], Function[..., Vector]]: ...
 def factor(
     function: Any = None,
@@ -45,6 +52,8 @@ def factor(
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
+    layout: LayoutLike | None = None,
+    normalise: bool = False,
 ) -> Any:
     """Make a factor of a function that returns a residual vector.
 
@@ -52,7 +61,10 @@ def factor(
     ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
     not declare frames. ``chart`` is that of ``local`` and ``retract`` and of the Jacobians' columns: the name
     of a preset (``"sophus"``) or a ``liegen.Chart``; or charts of the columns of single variables,
-    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3.
+    ``{"x": "sophus"}``. By default it is that of GTSAM 4.3. ``layout`` is what rotations and poses are stored
+    as where generated code is called: a name (``"wxyz"``, ``"4x4"``, ``"ceres"``), a ``liegen.Layout``, or
+    layouts of single arguments; Jacobians do not depend on it. ``normalise`` brings quaternions, (cos, sin)
+    and directions of the arguments to unit length as they are read.
 
     ``noise`` ("full", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
     covariance^-1, in the frame of the residual: an upper triangular matrix (..., m, m) whose lower part is
@@ -61,14 +73,22 @@ def factor(
     ``mode``: "irls" (the default) or "triggs".
     """
     weighting = read_weighting(noise, loss, mode, str(here()))
-    return _decorated(function, sample, is_factor=True, frames=frames, chart=chart, weighting=weighting)
+    return _decorated(
+        function, sample, is_factor=True, frames=frames, chart=chart, layout=layout, normalise=normalise,
+        weighting=weighting,
+    )  # fmt: skip
 
 
 @overload
 def function(function: Callable[P, S], /) -> Function[P, S]: ...
 @overload
 def function(
-    *, sample: Sampler | None = None, frames: bool = True, chart: ChartLike | None = None
+    *,
+    sample: Sampler | None = None,
+    frames: bool = True,
+    chart: ChartLike | None = None,
+    layout: LayoutLike | None = None,
+    normalise: bool = False,
 ) -> Callable[[Callable[P, S]], Function[P, S]]: ...
 def function(
     function: Any = None,
@@ -77,12 +97,16 @@ def function(
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
+    layout: LayoutLike | None = None,
+    normalise: bool = False,
 ) -> Any:
     """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``.
 
-    ``chart`` as in :func:`factor`; it is that of the Jacobians' rows too.
+    ``chart``, ``layout`` and ``normalise`` as in :func:`factor`; the first two are those of the outputs too.
     """
-    return _decorated(function, sample, is_factor=False, frames=frames, chart=chart)
+    return _decorated(
+        function, sample, is_factor=False, frames=frames, chart=chart, layout=layout, normalise=normalise
+    )
 
 
 def _decorated(
@@ -92,12 +116,15 @@ def _decorated(
     is_factor: bool,
     frames: bool,
     chart: ChartLike | None,
+    layout: LayoutLike | None,
+    normalise: bool,
     weighting: Weighting | None = None,
 ) -> Callable[..., Any]:
     if function is None:
         return partial(
-            _decorated, sample=sample, is_factor=is_factor, frames=frames, chart=chart, weighting=weighting
-        )
+            _decorated, sample=sample, is_factor=is_factor, frames=frames, chart=chart, layout=layout,
+            normalise=normalise, weighting=weighting,
+        )  # fmt: skip
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     doc = inspect.getdoc(function) or ""
@@ -111,5 +138,7 @@ def _decorated(
         frames,
         chart,
         weighting=weighting,
+        layout=layout,
+        normalise=normalise,
     )
     return made

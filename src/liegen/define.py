@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar
 import numpy as np
 
 from liegen.errors import DefinitionError
+from liegen.layouts import OWN, storage
 from liegen.manifolds import Value
 from liegen.manifolds.node import called, here
 from liegen.noise import Weighting, weighted_graph
@@ -18,8 +19,10 @@ from liegen.trace import (
     ChartLike,
     FrameReport,
     Graph,
+    LayoutLike,
     Outputs,
     Signature,
+    in_layouts,
     inlined,
     latex,
     trace,
@@ -53,6 +56,8 @@ class Function(Generic[P, T]):
     chart: ChartLike | None = None  # None: not stated, GTSAM's
     in_place: bool = False
     weighting: Weighting | None = None
+    layout: LayoutLike | None = None  # None: not stated, liegen's own
+    normalise: bool = False
     plain: Graph = field(init=False, repr=False)
     graph: Graph = field(init=False, repr=False)
 
@@ -61,6 +66,7 @@ class Function(Generic[P, T]):
             self.function, self.declared, self.name, self.doc,
             factor=self.is_factor, frames=self.checked, chart=self.chart,
         )  # fmt: skip
+        graph = in_layouts(graph, self.layout, normalise=self.normalise)
         object.__setattr__(self, "plain", graph)
         weighted = weighted_graph(graph, self.weighting) if self.weighting else graph
         object.__setattr__(self, "graph", weighted)
@@ -80,8 +86,8 @@ class Function(Generic[P, T]):
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> T:
         """Inline into the formula that is being traced, or evaluate on numbers.
 
-        Numbers are typed values or arrays of shape (..., n); the result is typed. Raises DefinitionError for
-        missing, unknown or mismatched arguments.
+        Numbers are typed values or arrays of shape (..., n), in the factor's layout; the result is typed.
+        Raises DefinitionError for missing, unknown or mismatched arguments.
         """
         values = self._bound(args, kwargs)
         if any(v.traced for v in values.values()):
@@ -96,15 +102,17 @@ class Function(Generic[P, T]):
             given = [(s, complete[s.name]) for s in self.declared]
             inlined(self.name, here(), given, result, frames=self.checked, chart=self.chart)
             return result
-        results = self.kernel.value.evaluate({name: v.coords for name, v in values.items()})
-        typed = {name: node.manifold.holding(results[name]) for name, node in self.graph.outputs}
+        results = self.kernel.value.evaluate(self._stored(values))
+        typed = {
+            name: node.manifold.holding(storage(node.manifold.form, self.graph.layout).read(results[name]))
+            for name, node in self.graph.outputs
+        }
         single: Any = next(iter(typed.values())) if len(typed) == 1 else Outputs(typed)  # type: ignore[arg-type]
         return single
 
     def jacobians(self, *args: P.args, **kwargs: P.kwargs) -> dict[str, np.ndarray[Any, Any]]:
         """The outputs and all Jacobians on numbers, by name: ``res`` (..., m), ``res_D_x`` (..., m, k)."""
-        values = {name: v.coords for name, v in self._bound(args, kwargs).items()}
-        results = self.kernel.jacobians.evaluate(values)
+        results = self.kernel.jacobians.evaluate(self._stored(self._bound(args, kwargs)))
         arrays: dict[str, np.ndarray[Any, Any]] = {}
         for port in self.kernel.jacobians.outputs:
             entries = np.stack(np.broadcast_arrays(*results[port.name]), axis=-1).astype(np.float64)
@@ -127,6 +135,11 @@ class Function(Generic[P, T]):
             raise DefinitionError(f"{here()}: call it as {self.name}({usage})")
         return {s.name: self._coerced(s, given[s.name]) for s in free}
 
+    def _stored(self, values: Mapping[str, Value]) -> dict[str, Any]:
+        """What the kernel reads, in the layout of each argument."""
+        layouts = {p.name: p.storage for p in self.graph.parameters}
+        return {name: layouts[name].write(v.coords) for name, v in values.items()}
+
     @property
     def _free(self) -> list[Signature]:
         """What a call gives: the unbound parameters, and what noise and loss add."""
@@ -135,10 +148,11 @@ class Function(Generic[P, T]):
         return [s for s in self.declared if s.bound is None] + weights
 
     def _shape(self, name: str) -> tuple[int, ...]:
-        """The array of an argument that noise or loss adds; empty for others."""
+        """The array of an argument."""
         m = self.plain.outputs[0][1].manifold.form.dim
         weights = self.weighting.weights(m) if self.weighting else ()
-        return next((w.shape for w in weights if w.name == name), ())
+        own = {p.name: p.storage.shape for p in self.plain.parameters}
+        return next((w.shape for w in weights if w.name == name), own.get(name, ()))
 
     def _coerced(self, s: Signature, value: Any) -> Value:
         if not isinstance(value, Value):
@@ -151,13 +165,27 @@ class Function(Generic[P, T]):
                         f"(..., {', '.join(map(str, shape))}) is needed, this one has shape {matrix.shape}"
                     )
                 value = matrix.reshape(*matrix.shape[:-2], -1)
-            return s.manifold.from_storage(value)
+            return self._from_storage(s, value)
         if value.form != s.manifold.form:
             raise DefinitionError(
                 f"{here()}: {self.name}: argument {s.name!r} must be {s.manifold.form.name}, "
                 f"got {called(value)}"
             )
         return value
+
+    def _from_storage(self, s: Signature, array: Any) -> Value:
+        """The typed value of an array in the argument's layout."""
+        layout = next((p.layout for p in self.plain.parameters if p.name == s.name), OWN)
+        stored = storage(s.manifold.form, layout)
+        if stored.own:
+            return s.manifold.from_storage(array)
+        numbers = np.asarray(array, dtype=np.float64)
+        if numbers.ndim == 0 or numbers.shape[-1] != stored.size:
+            raise DefinitionError(
+                f"{here()}: {self.name}: argument {s.name!r}: an array of shape (..., {stored.size}) is "
+                f"needed ({', '.join(stored.names)}), this one has shape {numbers.shape}"
+            )
+        return s.manifold.holding(stored.read([numbers[..., k][()] for k in range(stored.size)]))
 
     def vary(
         self, *names: str, name: str = "", doc: str = "", sample: Sampler | None = None
@@ -229,7 +257,15 @@ class Function(Generic[P, T]):
             self._chart_of({s.name for s in declared if s.variable and s.bound is None}),
             self.in_place,
             weighting or self.weighting,
+            self._layout_of({s.name for s in declared if s.bound is None}),
+            self.normalise,
         )
+
+    def _layout_of(self, arguments: set[str]) -> LayoutLike | None:
+        """The stated layout without what is no argument any more."""
+        if not isinstance(self.layout, Mapping):
+            return self.layout
+        return {name: layout for name, layout in self.layout.items() if name in arguments}
 
     def _chart_of(self, variables: set[str]) -> ChartLike | None:
         """The stated chart without what is no variable any more."""
@@ -243,6 +279,17 @@ class Function(Generic[P, T]):
         Raises DefinitionError for a chart that does not exist.
         """
         return self if chart is None or self.chart is not None else replace(self, chart=chart)
+
+    def in_layout(self, layout: LayoutLike | None, *, normalise: bool = False) -> Function[P, T]:
+        """The same formula on other stored numbers, by name or as a ``liegen.Layout``; a stated one stays.
+
+        ``normalise`` brings quaternions, (cos, sin) and directions of the arguments to unit length. Raises
+        DefinitionError for a layout that does not exist.
+        """
+        stated = self.layout if layout is None or self.layout is not None else layout
+        unit = self.normalise or normalise
+        same = stated is self.layout and unit == self.normalise
+        return self if same else replace(self, layout=stated, normalise=unit)
 
     def _known(self, names: Any) -> None:
         possible = [s.name for s in self.declared if s.bound is None]

@@ -10,17 +10,18 @@ import numpy as np
 
 from liegen.algebra.linear import Matrix
 from liegen.algebra.linear import Vector as Coordinates
-from liegen.charts import GTSAM, form_chart
+from liegen.charts import GTSAM, Preset, form_chart
 from liegen.choice import ranked
 from liegen.differentiate import STRATEGIES, Expressions, expressions, fused, linearised
 from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
+from liegen.layouts import OWN, Stored, storage
 from liegen.manifolds import Manifold, ManifoldForm, MatrixValue, Vector
 from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program
 from liegen.program.lower import lower
 from liegen.program.passes import optimise
-from liegen.trace import Graph, formula, jacobian_formulas
+from liegen.trace import Graph, Parameter, formula, jacobian_formulas
 
 #: Orders whose counts are that close to the best one's are carried out.
 CLOSE = 1.005
@@ -46,10 +47,10 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
         doc=graph.doc,
         site=graph.site,
         arguments=(
-            *(_argument(p.name, p.manifold.form, variable=p.variable) for p in graph.parameters),
+            *(_argument(p) for p in graph.parameters),
             *(_weight(w) for w in weights_of(graph, weighting)),
         ),
-        outputs=tuple(_output(name, node.manifold.form) for name, node in graph.outputs),
+        outputs=tuple(_output(name, node.manifold.form, graph) for name, node in graph.outputs),
         formula=formula(shown),
         jacobian_formulas=jacobian_formulas(shown),
         conventions=_conventions(graph),
@@ -70,13 +71,16 @@ def _candidates(
     other = fused(graph)
     if other is not graph:
         variants.append((other, expressions(other)))
-    local = [linearised(g, v) for g, v in variants]
-    found = [(count, k, name) for k, (g, v) in enumerate(variants) for count, name in ranked(g, v, local[k])]
-    least = min(count for count, _, _ in found)
-    for count, k, name in found:
+    found = [
+        (count, name, local, g, v)
+        for g, v in variants
+        for local in linearised(g, v)
+        for count, name in ranked(g, v, local)
+    ]
+    least = min(count for count, *_ in found)
+    for count, name, local, g, v in found:
         if count <= CLOSE * least:
-            program = lowered(*variants[k], local[k].jacobians(STRATEGIES[name]), weighting)
-            yield name, *optimise(program)
+            yield name, *optimise(lowered(g, v, local.jacobians(STRATEGIES[name]), weighting))
 
 
 def weights_of(graph: Graph, weighting: Weighting | None) -> tuple[Weight, ...]:
@@ -116,7 +120,8 @@ def lowered(
         scalars[name], blocks = weighting.apply(given, residual, blocks)
     arguments = {**values.inputs, **given}
     inputs = [(Port(name, (len(coords),)), coords) for name, coords in arguments.items()]
-    outputs = [(Port(name, node.manifold.form.shape), scalars[name]) for name, node in graph.outputs]
+    stored = {name: storage(node.manifold.form, graph.layout) for name, node in graph.outputs}
+    outputs = [(Port(name, s.shape), s.write(scalars[name])) for name, s in stored.items()]
     outputs += [
         (Port(f"{name}_D_{variable}", (len(m), len(m[0]))), tuple(x for row in m for x in row))
         for (name, variable), m in blocks.items()
@@ -125,8 +130,9 @@ def lowered(
     return lower(graph.name, inputs, outputs, domain)
 
 
-def _argument(name: str, form: ManifoldForm, *, variable: bool) -> Argument:
-    return Argument(name, form.name, form.storage, form.dim, variable)
+def _argument(p: Parameter) -> Argument:
+    form, stored = p.manifold.form, p.storage
+    return Argument(p.name, form.name, stored.names, form.dim, p.variable, stored.shape)
 
 
 def _weight(weight: Weight) -> Argument:
@@ -134,8 +140,9 @@ def _weight(weight: Weight) -> Argument:
     return Argument(weight.name, "numbers", storage, 0, False, weight.shape, weight.meaning)
 
 
-def _output(name: str, form: ManifoldForm) -> Output:
-    return Output(name, form.name, form.storage, form.dim, form.shape)
+def _output(name: str, form: ManifoldForm, graph: Graph) -> Output:
+    stored = storage(form, graph.layout)
+    return Output(name, form.name, stored.names, form.dim, stored.shape)
 
 
 def _with_parts(form: ManifoldForm) -> tuple[ManifoldForm, ...]:
@@ -150,14 +157,24 @@ def _conventions(graph: Graph) -> tuple[str, ...]:
     ]
     parameters: list[Any] = [p for _, node in graph.outputs for p in node.operation.parameters]
     owners = [p for p in parameters if isinstance(p, type) and issubclass(p, Manifold)]
-    used = [(m.form, GTSAM) for m in owners]
-    used += [(p.manifold.form, p.chart) for p in graph.parameters]
-    used += [(m.form, graph.chart) for m in results]
+    used = [(m.form, GTSAM, OWN) for m in owners]
+    used += [(p.manifold.form, p.chart, p.layout) for p in graph.parameters]
+    used += [(m.form, graph.chart, graph.layout) for m in results]
     used += [
-        (node.operands[0].manifold.form, graph.chart)
+        (node.operands[0].manifold.form, graph.chart, graph.layout)
         for node in graph.nodes()
         if graph.chart is not GTSAM and node.operation.name in ("local", "retract")
     ]
-    parts = [(part, preset) for form, preset in used for part in _with_parts(form)]
-    charts = [(form, form_chart(form, preset)) for form, preset in parts]
-    return tuple(dict.fromkeys(form.note if chart is None else chart.note for form, chart in charts))
+    parts = [(part, preset, stored) for form, preset, stored in used for part in _with_parts(form)]
+    lines = [_convention(form, preset, stored) for form, preset, stored in parts]
+    unit = ("Arguments are normalised: quaternions, (cos, sin) and directions as they are read",)
+    return tuple(dict.fromkeys((*lines, *unit * graph.normalise)))
+
+
+def _convention(form: ManifoldForm, preset: Preset, stored: Stored) -> str:
+    """The note of a manifold or of its chart, with what it is stored as."""
+    chart, own = form_chart(form, preset), storage(form, stored)
+    note = form.note if chart is None else chart.note
+    before, _, rest = note.partition("stored ")
+    _, _, after = rest.partition(";")
+    return note if own.own else f"{before}stored {own.text} (layout {stored.name});{after}"

@@ -54,6 +54,11 @@ class Output:
         """Number of stored scalars."""
         return len(self.storage)
 
+    @property
+    def laid_out(self) -> bool:
+        """Whether a matrix stands for an element of another manifold: its order is that of its layout."""
+        return len(self.shape) > 1 and self.dim != self.size
+
 
 @dataclass(frozen=True)
 class PassCount:

@@ -1,5 +1,6 @@
 """docs/conventions.md states every preset's definition and what it costs."""
 
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,8 @@ TEXT = (Path(__file__).parents[2] / "docs" / "conventions.md").read_text(encodin
 def rows():
     lines = TEXT.splitlines()
     start = next(k for k, line in enumerate(lines) if line.startswith("| preset | `prior_se3`"))
-    return [
-        [cell.strip(" `") for cell in line.strip("|").split("|")] for line in lines[start:] if "|" in line
-    ]
+    table = takewhile(lambda line: "|" in line, lines[start:])
+    return [[cell.strip(" `") for cell in line.strip("|").split("|")] for line in table]
 
 
 def test_definitions_are_those_of_the_presets():

@@ -6,12 +6,13 @@ import pytest
 from click.testing import CliRunner
 
 import liegen
-from liegen import S2, SE3, SO2, Chart, DefinitionError, factor, function
+from liegen import R6, S2, SE3, SO2, Chart, DefinitionError, factor, function
 from liegen.algebra.linear import eye, product
 from liegen.charts import PRESETS, form_chart
 from liegen.cli import app
 from liegen.library import bearing_se3_r3, between_se2, between_se3, between_so3, prior_se3, range_se3_r3
 from liegen.samples import CASES, Draw
+from liegen.trace import latex
 from liegen.verify import verify
 
 SIX = ("between_se3", "prior_se3", "between_so3", "between_se2", "range_se3_r3", "projection_cal3_s2")
@@ -121,6 +122,38 @@ def test_a_chart_of_ones_own():
     values = drawn(f)
     np.testing.assert_allclose(numbers(f, values)["res_D_y"], ad_jacobian(f, "y", values), atol=1e-12)
     assert any("Chart(side='left', translation='body'" in line for line in f.kernel.conventions)
+
+
+def test_translation_in_the_body_has_the_identity_as_column_map():
+    body = Chart(translation="body")  # GTSAM 4.2 without GTSAM_POSE3_EXPMAP
+    x = drawn(prior_se3)["x"].coords
+    preset = prior_se3.in_chart(body).graph.chart
+    np.testing.assert_array_equal(column_map(SE3.form, preset, x), np.eye(6))
+    d = (0.1, -0.2, 0.3, 1.0, 2.0, 3.0)
+    moved, start = form_chart(SE3.form, preset).retract(x, d), SE3.from_storage(x)
+    shift = start.rotation.matrix() @ d[3:]
+    np.testing.assert_allclose(moved[4:], np.asarray(start)[4:] + shift, atol=1e-14)  # t' = t + R v
+    values = drawn(between_se3)
+    found = numbers(between_se3.in_chart(body), values)
+    np.testing.assert_allclose(
+        found["res_D_x"], ad_jacobian(between_se3.in_chart(body), "x", values), atol=1e-12
+    )
+
+
+def test_jacobians_of_a_chart_have_names():
+    kernel = between_se3.in_chart("ceres").kernel
+    assert kernel.jacobian_formulas[-1] == "res_D_y = Jr^-1[ceres](z, a) Chart(y)"
+    own = between_se3.in_chart(Chart(side="left")).kernel
+    assert own.jacobian_formulas[-2] == "res_D_x = -Jr^-1[chart](z, a) Ad(a^-1) Chart(x)"
+
+    @factor(chart="g2o")
+    def moved(x: SE3, d: R6, *, z: SE3):
+        return z.local(x.retract(d))
+
+    lines = moved.kernel.jacobian_formulas
+    assert lines[-2] == "res_D_x = Jr^-1[g2o](z, a) Ad[g2o](x, d) Chart(x)"
+    assert lines[-1] == "res_D_d = Jr^-1[g2o](z, a) Jr[g2o](x, d)"
+    assert r"J_{r,\,\text{g2o}}^{-1}\left(" in latex(moved.graph)
 
 
 def test_the_default_is_gtsam_and_costs_nothing():

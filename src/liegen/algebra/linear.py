@@ -9,13 +9,25 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import reduce
 from itertools import pairwise
+from typing import Protocol
 
 from .base import Scalar
 
 Vector = tuple[Scalar, ...]
 Matrix = tuple[tuple[Scalar, ...], ...]
+
+
+class Factor(Protocol):
+    """A factor of which more is known than its numbers: see :mod:`liegen.algebra.factors`."""
+
+    @property
+    def parts(self) -> Chain:
+        """What it is a product of."""
+        ...
+
+
 #: A matrix as a product of sparse factors, leftmost first; whoever multiplies chooses the order.
-Chain = tuple[Matrix, ...]
+Chain = tuple[Matrix | Factor, ...]
 
 
 def is_structural(a: Scalar) -> bool:
@@ -182,19 +194,54 @@ def multiply_cost(a: Matrix, b: Matrix) -> int:
     return sum([m * n for m, n in zip(in_columns, in_rows, strict=True)])
 
 
+def plain(chain: Chain) -> tuple[Matrix, ...]:
+    """The chain in numbers; a factor -I becomes the sign of the next one."""
+    flat: list[Matrix] = []
+    for factor in chain:
+        for matrix in (factor,) if isinstance(factor, tuple) else plain(factor.parts):
+            sign = bool(flat) and is_sign(flat[-1])
+            flat[-1:] = [negative(matrix)] if sign else [*flat[-1:], matrix]
+    return tuple(flat)
+
+
+def negative(a: Matrix) -> Matrix:
+    """Return -A."""
+    return tuple(negate(row) for row in a)
+
+
+def negated(chain: Chain) -> Chain:
+    """A chain whose product is the negative."""
+    return (negative(eye(len(plain(chain[:1])[0]))), *chain)
+
+
+def is_identity(a: Matrix | Factor) -> bool:
+    """Whether a factor is I, as structure."""
+    return isinstance(a, tuple) and _is_structure(a) and a == eye(len(a))
+
+
+def is_sign(a: Matrix | Factor) -> bool:
+    """Whether a factor is -I, as structure."""
+    return isinstance(a, tuple) and _is_structure(a) and a == negative(eye(len(a)))
+
+
+def _is_structure(a: Matrix) -> bool:
+    """Whether there are entries (conditions have empty blocks), and all of them are structural."""
+    return bool(a) and all(is_structural(x) for row in a for x in row)
+
+
 def product_from_left(chain: Chain) -> Matrix:
     """Multiply a chain out from the left."""
-    return reduce(matmul, chain)
+    return reduce(matmul, plain(chain))
 
 
 def product_from_right(chain: Chain) -> Matrix:
     """Multiply a chain out from the right."""
-    return reduce(lambda total, factor: matmul(factor, total), reversed(chain))
+    return reduce(lambda total, factor: matmul(factor, total), reversed(plain(chain)))
 
 
 def product(chain: Chain) -> Matrix:
     """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
-    factors = list(chain)
+    factors = list(plain(chain))
     costs = [multiply_cost(a, b) for a, b in pairwise(factors)]
     while costs:
         k = costs.index(min(costs))

@@ -89,8 +89,8 @@ def _inputs(function: Function[..., object], calls: int, seed: int) -> NDArray[n
     draw = Draw(np.random.default_rng(seed))
     sampler = function.sampler or default_sampler({p.name: p.manifold for p in function.graph.parameters})
     rows = [sampler(draw, Case("random")) for _ in range(calls)]
-    names = [p.name for p in function.graph.parameters]
-    return np.array([np.concatenate([np.asarray(row[name]) for name in names]) for row in rows])
+    stored = {p.name: p.storage for p in function.graph.parameters}
+    return np.array([[x for name, s in stored.items() for x in s.write(row[name].coords)] for row in rows])
 
 
 def _variants(function: Function[..., object]) -> tuple[Variant, ...]:
@@ -116,7 +116,8 @@ def _through_storage(function: Function[..., object], values: Expressions) -> di
             form = p.manifold.form
             symbols = values.inputs[p.name]
             d = [ca.SX.sym(f"d{k}") for k in range(form.dim)]
-            slope = ca.jacobian(ca.vertcat(*form.retract(symbols, d)), ca.vertcat(*d))
+            moved = p.storage.write(form.retract(p.storage.read(symbols), d))
+            slope = ca.jacobian(ca.vertcat(*moved), ca.vertcat(*d))
             slope = ca.substitute(slope, ca.vertcat(*d), ca.DM.zeros(form.dim))
             by_storage = ca.jacobian(ca.vertcat(*values.scalars[id(node)]), ca.vertcat(*symbols))
             dense = ca.densify(ca.mtimes(by_storage, slope))

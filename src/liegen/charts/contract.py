@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from liegen.algebra.linear import Chain, Vector, negate
+from liegen.algebra.linear import Chain, Vector
 from liegen.manifolds.form import Compute, Coords, Rule
 
 from .chart import Chart
@@ -45,8 +45,3 @@ class FormChart(ABC):
     @abstractmethod
     def rows(self, x: Coords) -> Chain:
         """The inverse of M(x)."""
-
-
-def negated(chain: Chain) -> Chain:
-    """A chain whose product is the negative."""
-    return (tuple(negate(row) for row in chain[0]), *chain[1:])

@@ -15,7 +15,7 @@ from liegen.algebra.linear import (
     matmul,
     matscale,
     matvec,
-    negate,
+    negated,
     product,
     stacked,
     sub,
@@ -25,7 +25,7 @@ from liegen.algebra.linear import (
 from liegen.manifolds.form import Blocks, Compute, Coords, PoseForm, Rule
 
 from .chart import Chart
-from .contract import FormChart, negated
+from .contract import FormChart
 from .rotations import RotationChart
 
 
@@ -110,8 +110,8 @@ class CoupledChart(PoseChart):
             form, own = self.form, matvec(self.E, d)
             by_d: Chain = (form.Jr(own), self.E)
             if self.left:
-                return (eye(form.dim),), (*form.adjoint_inverse(x), *by_d)
-            return form.adjoint_inverse(form.exp(own)), by_d
+                return (eye(form.dim),), (*form.Ad_inverse(x), *by_d)
+            return form.Ad_inverse(form.exp(own)), by_d
 
         return blocks
 
@@ -133,25 +133,24 @@ class CoupledChart(PoseChart):
         return value, blocks
 
     def local_blocks(self) -> Rule:
-        """Right: -E^-1 Jl^-1, E^-1 Jr^-1; left: -d/dy, E^-1 Jr^-1 Ad(x)."""
+        """Right: -E^-1 Jl^-1, E^-1 Jr^-1; left: -E^-1 Jr^-1 Ad(x), E^-1 Jl^-1 Ad(y)."""
 
         def blocks(r: Coords, x: Coords, y: Coords) -> Blocks:
             form, own = self.form, matvec(self.E, r)
+            right, left = form.Jr_inv(own, principal=True), form.Jl_inv(own, principal=True)
             if self.left:
-                by_y: Chain = (self.E_inv, form.Jr_inv(own, principal=True), *form.adjoint(x))
-                return negated(by_y), by_y
-            by_x: Chain = (self.E_inv, form.Jl_inv(own, principal=True))
-            return negated(by_x), (self.E_inv, form.Jr_inv(own, principal=True))
+                return negated((self.E_inv, right, *form.Ad(x))), (self.E_inv, left, *form.Ad(y))
+            return negated((self.E_inv, left)), (self.E_inv, right)
 
         return blocks
 
     def columns(self, x: Coords) -> Chain:
         """Either E or Ad(x^-1) E."""
-        return (*self.form.adjoint_inverse(x), self.E) if self.left else (self.E,)
+        return (*self.form.Ad_inverse(x), self.E) if self.left else (self.E,)
 
     def rows(self, x: Coords) -> Chain:
         """Either E^-1 or E^-1 Ad(x)."""
-        return (self.E_inv, *self.form.adjoint(x)) if self.left else (self.E_inv,)
+        return (self.E_inv, *self.form.Ad(x)) if self.left else (self.E_inv,)
 
 
 @dataclass(frozen=True)
@@ -198,48 +197,47 @@ class SplitChart(PoseChart):
         return blocks
 
     def local_blocks(self) -> Rule:
-        """World: rows -R_x, R_y of the translation; body: with u the result [-G(u), -I] and R_x^T R_y."""
+        """By x: -diag(slope, I) diag(A, B) [[I, 0], [L, I]]; by y: diag(slope, I) diag(C, D).
+
+        A = R_x, C = R_y in a left chart, else both I. B = R_x, D = R_y, L = 0 in the world; B = I,
+        D = R_x^T R_y, L = G(u) in the body, with u the translation of the result.
+        """
 
         def blocks(r: Coords, x: Coords, y: Coords) -> Blocks:
-            form = self.form
-            (q, _, R), (p, _, S), (w, u) = self._split(x), self._split(y), self.parts(r)
-            turning: Any = self.turning.local_blocks()
-            by_q, by_p = turning(w, q, p)
+            form, turning = self.form, self.turning
+            q, p = form.rotation_of(x), form.rotation_of(y)
+            w, u = self.parts(r)
+            slope_x, slope_y = turning.local_slopes(w, q, p)
             dim, space = form.rotation.dim, form.rotation.space
-            ((slope_x, *rest_x), (slope_y, *rest_y)) = by_q, by_p
-            turn_x, turn_y = (rest[0] if rest else eye(dim) for rest in (rest_x, rest_y))
-            none = zeros(space, dim)
-            swing = none if self.world else _negative(form.rotation.generator(u))
-            away = _negative(R) if self.world else _negative(eye(space))
-            along = S if self.world else matmul(transpose(R), S)
-            return (
-                self._rows(slope_x, turn_x, swing, away),
-                self._rows(slope_y, turn_y, none, along),
+            swing = zeros(space, dim) if self.world else form.rotation.generator(u)
+            inner = stacked(
+                *form.in_order(
+                    beside(*form.in_order(eye(dim), zeros(dim, space))),
+                    beside(*form.in_order(swing, eye(space))),
+                )
             )
+            # R_x^T R_y is the word of a product, so that it can cancel
+            seen = () if self.world else (form.rotation.letter(q, inverse=True),)
+            letters = (form.rotation.letter(q),) if self.world else ()
+            by_x = (self.from_own(slope_x, eye(space)), form.turn(turning.word(q), letters), inner)
+            by_y = (
+                self.from_own(slope_y, eye(space)),
+                form.turn(turning.word(p), (*seen, form.rotation.letter(p))),
+            )
+            return negated(by_x), by_y
 
         return blocks
 
-    def _rows(self, slope: Matrix, turn: Matrix, swing: Matrix, move: Matrix) -> Chain:
-        """diag(slope, I) [[turn, 0], [swing, move]], in the chart's and in the group's order."""
-        form, (dim, space) = self.form, (self.form.rotation.dim, self.form.rotation.space)
-        inner = stacked(
-            *form.in_order(
-                beside(*form.in_order(turn, zeros(dim, space))), beside(*form.in_order(swing, move))
-            )
-        )
-        return self.from_own(slope, eye(space)), inner
-
     def columns(self, x: Coords) -> Chain:
         """diag(k I or k R^T, I or R^T)."""
-        q, _, R = self._split(x)
-        move = transpose(R) if self.world else eye(self.form.rotation.space)
-        return (self.to_own(self.turning.columns(q)[0], move),)
+        q, space = self.form.rotation_of(x), self.form.rotation.space
+        away = (self.form.rotation.letter(q, inverse=True),) if self.world else ()
+        scaled = matscale(self.chart.scale, eye(self.form.rotation.dim))
+        return (self.form.turn(self.turning.word(q, inverse=True), away), self.to_own(scaled, eye(space)))
 
     def rows(self, x: Coords) -> Chain:
         """diag(I/k or R/k, I or R)."""
-        q, _, R = self._split(x)
-        return (self.from_own(self.turning.rows(q)[0], R if self.world else eye(self.form.rotation.space)),)
-
-
-def _negative(a: Matrix) -> Matrix:
-    return tuple(negate(row) for row in a)
+        q, space = self.form.rotation_of(x), self.form.rotation.space
+        along = (self.form.rotation.letter(q),) if self.world else ()
+        scaled = matscale(self.turning.map.down, eye(self.form.rotation.dim))
+        return (self.from_own(scaled, eye(space)), self.form.turn(self.turning.word(q), along))

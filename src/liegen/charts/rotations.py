@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from liegen.algebra.linear import Chain, Vector, eye, matscale, transpose
+from liegen.algebra.factors import Word
+from liegen.algebra.linear import Chain, Matrix, Vector, eye, matscale, negated, transpose
 from liegen.manifolds.form import Blocks, Coords, RotationForm, Rule
 
 from .chart import Chart
-from .contract import FormChart, negated
+from .contract import FormChart
 from .rotation_maps import MAPS, RotationMap
 
 
@@ -47,10 +48,10 @@ class RotationChart(FormChart):
         """Right: d/dx = m^T, d/dd = slope; left: d/dx = I, d/dd = R^T slope."""
 
         def blocks(_: Coords, x: Coords, d: Coords) -> Blocks:
-            slope, turn = self.map.slope(d), self.form.matrix
+            slope = self.map.slope(d)
             if self.left:
-                return (eye(self.form.dim),), (transpose(turn(x)), slope)
-            return self.form.adjoint_inverse(self.map.rotation(d)), (slope,)
+                return (eye(self.form.dim),), (*self.form.turned(x, inverse=True), slope)
+            return self.form.Ad_inverse(self.map.rotation(d)), (slope,)
 
         return blocks
 
@@ -58,19 +59,28 @@ class RotationChart(FormChart):
         """Right: d/dy = slope^-1, d/dx = -slope^-T; left: d/dy = -d/dx = slope^-T R_y = slope^-1 R_x."""
 
         def blocks(r: Coords, x: Coords, y: Coords) -> Blocks:
-            slope = self.map.slope_inv(r, self.turned(x, y))
+            by_x, by_y = self.local_slopes(r, x, y)
             if self.left:
-                by_y = (transpose(slope), self.form.matrix(y))
-                return negated((slope, self.form.matrix(x))), by_y
-            return negated((transpose(slope),)), (slope,)
+                return (negated((by_x, *self.form.turned(x))), (by_y, *self.form.turned(y)))
+            return negated((by_x,)), (by_y,)
 
         return blocks
 
+    def local_slopes(self, r: Coords, x: Coords, y: Coords) -> tuple[Matrix, Matrix]:
+        """The slopes of ``local_blocks`` by x (without its sign) and by y, as seen by the chart's side."""
+        slope = self.map.slope_inv(r, self.turned(x, y))
+        return (slope, transpose(slope)) if self.left else (transpose(slope), slope)
+
+    def word(self, x: Coords, *, inverse: bool = False) -> Word:
+        """What turns the body's axes into those of the coordinates: R for left charts in space."""
+        return (self.form.letter(x, inverse=inverse),) if self.left else ()
+
     def columns(self, x: Coords) -> Chain:
         """Either k I or k R^T."""
-        turn = transpose(self.form.matrix(x)) if self.left else eye(self.form.dim)
-        return (matscale(self.chart.scale, turn),)
+        scaled = matscale(self.chart.scale, eye(self.form.dim))
+        return (*self.form.turned(x, inverse=True), scaled) if self.left else (scaled,)
 
     def rows(self, x: Coords) -> Chain:
         """Either I/k or R/k."""
-        return (matscale(self.map.down, self.form.matrix(x) if self.left else eye(self.form.dim)),)
+        scaled = matscale(self.map.down, eye(self.form.dim))
+        return (scaled, *self.form.turned(x)) if self.left else (scaled,)

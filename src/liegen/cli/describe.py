@@ -6,7 +6,16 @@ import json
 
 import click
 
-from .shared import chosen, groups_option, noise_options, source_argument, table, weighed
+from .shared import (
+    Convention,
+    chosen,
+    convention_options,
+    groups_option,
+    noise_options,
+    source_argument,
+    table,
+    weighed,
+)
 
 
 @click.command("list")
@@ -31,12 +40,16 @@ def list_factors(source: str | None, groups: tuple[str, ...], as_json: bool) -> 
 @click.argument("name")
 @source_argument
 @groups_option
+@convention_options
 @noise_options
 @click.option("--latex", "as_latex", is_flag=True, help="Print the residual and its Jacobians in LaTeX.")
 def explain(
     name: str,
     source: str | None,
     groups: tuple[str, ...],
+    chart: str | None,
+    layout: str | None,
+    normalise: bool,
     noise: str | None,
     loss: str | None,
     mode: str | None,
@@ -45,5 +58,6 @@ def explain(
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
     from liegen.explain import explanation, latex_explanation
 
-    (function,) = weighed(chosen(source, [name], groups), noise, loss, mode)
+    convention = Convention(chart, layout, normalise)
+    (function,) = weighed(chosen(source, [name], groups, convention), noise, loss, mode)
     click.echo((latex_explanation if as_latex else explanation)(function), nl=False)

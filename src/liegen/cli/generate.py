@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 import click
 
 from .shared import (
-    chart_option,
+    Convention,
     chosen,
+    convention_options,
     groups_option,
     names_option,
     noise_options,
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from liegen.sources import AnyFunction
 
 TARGETS = ("numpy", "c")
-LAYOUTS = ("row", "col")
+MAJORS = ("row", "col")
 #: Stands for the output folder in the headers: files are the same wherever they are written.
 ANYWHERE = "DIR"
 
@@ -43,16 +44,17 @@ class Request:
     names: tuple[str, ...]
     targets: tuple[str, ...]
     package: str
-    layout: str
+    major: str
     groups: tuple[str, ...] = ()
-    chart: str | None = None
+    convention: Convention = Convention()  # noqa: RUF009  (a frozen value)
     noise: str | None = None
     loss: str | None = None
     mode: str | None = None
 
     def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
         """The factors that are asked for, of ``source``, whitened and robust as asked for."""
-        return weighed(chosen(source, self.names, self.groups, self.chart), self.noise, self.loss, self.mode)
+        functions = chosen(source, self.names, self.groups, self.convention)
+        return weighed(functions, self.noise, self.loss, self.mode)
 
     def command(self, source: str | None, directory: str) -> str:
         """The command line that repeats the request; options with their default value are left out."""
@@ -62,9 +64,10 @@ class Request:
         words += [] if self.targets == TARGETS else [w for target in self.targets for w in ("-t", target)]
         words += ["-o", directory]
         words += [] if self.package == default_package(source, self.groups) else ["--package", self.package]
-        words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
-        for option in ("chart", "noise", "loss", "mode"):
-            words += [f"--{option}", getattr(self, option)] if getattr(self, option) else []
+        words += [] if self.major == MAJORS[0] else ["--major", self.major]
+        options = {**vars(self.convention), "noise": self.noise, "loss": self.loss, "mode": self.mode}
+        for option, value in options.items():
+            words += [f"--{option}", *([] if value is True else [value])] if value else []
         return shlex.join(words)
 
     @property
@@ -88,15 +91,18 @@ def requested(
     names: Sequence[str],
     targets: Sequence[str],
     package: str | None,
-    layout: str,
+    major: str,
     groups: Sequence[str] = (),
-    *options: str | None,
+    convention: Convention = Convention(),  # noqa: B008  (a frozen value)
+    noise: str | None = None,
+    loss: str | None = None,
+    mode: str | None = None,
 ) -> Request:
-    """Fill in the defaults; ``weighting`` is noise, loss and mode."""
+    """Fill in the defaults."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
     called = package or default_package(source, groups)
     unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
-    return Request(source, unique[0], wanted, called, layout, unique[1], *options)
+    return Request(source, unique[0], wanted, called, major, unique[1], convention, noise, loss, mode)
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -118,7 +124,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
         request.targets,
         package=request.package,
         regenerate=regenerate,
-        layout=request.layout,
+        layout=request.major,
     )
 
 
@@ -141,10 +147,10 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
     " Default: liegen_factors for the library, liegen_groups for groups, STEM_gen for a file STEM.py."
 )  # fmt: skip
 @click.option(
-    "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
-    help="col adds C functions with column-major Jacobians (suffix _cm).",
+    "--major", type=click.Choice(MAJORS), default=MAJORS[0], show_default=True,
+    help="Order of matrices in C: col adds functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
-@chart_option
+@convention_options
 @noise_options
 def generate(
     source: str | None,
@@ -153,8 +159,10 @@ def generate(
     targets: tuple[str, ...],
     output: str,
     package: str | None,
-    layout: str,
+    major: str,
     chart: str | None,
+    layout: str | None,
+    normalise: bool,
     noise: str | None,
     loss: str | None,
     mode: str | None,
@@ -162,7 +170,8 @@ def generate(
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout, groups, chart, noise, loss, mode)
+    convention = Convention(chart, layout, normalise)
+    request = requested(source, names, targets, package, major, groups, convention, noise, loss, mode)
     functions = request.chosen(source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -19,10 +20,24 @@ names_option = click.option(
 )
 
 
-chart_option = click.option(
-    "--chart", metavar="PRESET", help="Chart of local, retract and the Jacobians' columns: gtsam (default), "
-    "gtsam-4.2, symforce, sophus, manif, ceres, g2o, ros. A factor that states its chart keeps it.",
-)  # fmt: skip
+def convention_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--chart``, ``--layout`` and ``--normalise`` of a command; names are checked where they are used."""
+    options = (
+        click.option(
+            "--chart", metavar="PRESET", help="Chart of local, retract and the Jacobians' columns: gtsam "
+            "(default), gtsam-4.2, symforce, sophus, manif, ceres, g2o, ros. A factor that states its chart "
+            "keeps it."),
+        click.option(
+            "--layout", metavar="NAME", help="What rotations and poses are stored as: xyzw (default), wxyz, "
+            "matrix, 4x4, 3x4 (these also with -col), or the name of a preset. A factor that states its "
+            "layout keeps it."),
+        click.option(
+            "--normalise", is_flag=True, help="Bring quaternions, (cos, sin) and directions of arguments to "
+            "unit length."),
+    )  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
 
 
 groups_option = click.option(
@@ -55,32 +70,54 @@ def weighed(
 def weighed_by_name(
     source: str | None,
     groups: Sequence[str],
-    chart: str | None,
+    convention: Convention,
     noise: str | None,
     loss: str | None,
     mode: str | None,
 ) -> dict[str, AnyFunction]:
-    """All factors of a source in a chart, with noise and loss; other processes load them again with it."""
+    """All factors of a source in a convention, with noise and loss: how other processes load them again."""
     from liegen.sources import load
 
     plain = noise is loss is mode is None
-    factors = [f.in_chart(chart) for f in load(source, groups) if f.is_factor or plain]
+    factors = convention.of([f for f in load(source, groups) if f.is_factor or plain])
     return {f.name: f for f in weighed(factors, noise, loss, mode)}
 
 
-def chosen(
-    source: str | None, names: Sequence[str], groups: Sequence[str] = (), chart: str | None = None
-) -> tuple[AnyFunction, ...]:
-    """The factors, or the functions of groups, that a command is about, in a chart.
+@dataclass(frozen=True)
+class Convention:
+    """The chart and the layout that a command asks for."""
 
-    Raises DefinitionError for an unknown chart.
+    chart: str | None = None
+    layout: str | None = None
+    normalise: bool = False
+
+    def of(self, functions: Sequence[AnyFunction]) -> tuple[AnyFunction, ...]:
+        """The factors in it. Raises DefinitionError for an unknown chart or layout."""
+        from liegen.charts import preset
+        from liegen.layouts import stored
+
+        if self.chart is not None:
+            preset(self.chart, "--chart")
+        if self.layout is not None:
+            stored(self.layout, "--layout")
+        return tuple(
+            f.in_chart(self.chart).in_layout(self.layout, normalise=self.normalise) for f in functions
+        )
+
+
+def chosen(
+    source: str | None,
+    names: Sequence[str],
+    groups: Sequence[str] = (),
+    convention: Convention = Convention(),
+) -> tuple[AnyFunction, ...]:
+    """The factors, or the functions of groups, that a command is about, in a chart and a layout.
+
+    Raises DefinitionError for an unknown one.
     """
-    from liegen.charts import preset
     from liegen.sources import load, select
 
-    if chart is not None:
-        preset(chart, "--chart")
-    return tuple(f.in_chart(chart) for f in select(load(source, groups), names))
+    return convention.of(select(load(source, groups), names))
 
 
 def count(n: int, noun: str) -> str:

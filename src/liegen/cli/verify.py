@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import click
 
 from .shared import (
-    chart_option,
+    Convention,
     chosen,
+    convention_options,
     count,
     groups_option,
     names_option,
@@ -45,13 +46,15 @@ LISTED = 6
     "--samples", type=click.IntRange(min=1), help="Samples a factor; every special case by default."
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
-@chart_option
+@convention_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def verify(
     source: str | None,
     names: tuple[str, ...],
     groups: tuple[str, ...],
     chart: str | None,
+    layout: str | None,
+    normalise: bool,
     noise: str | None,
     loss: str | None,
     mode: str | None,
@@ -63,7 +66,8 @@ def verify(
     from liegen.verify import verify as run
     from liegen.verify.run import SAMPLES
 
-    functions = weighed(chosen(source, names, groups, chart), noise, loss, mode)
+    convention = Convention(chart, layout, normalise)
+    functions = weighed(chosen(source, names, groups, convention), noise, loss, mode)
     started = time.monotonic()
     with _shown(len(functions)) as told:
         report = run(
@@ -71,7 +75,7 @@ def verify(
             samples=samples or SAMPLES,
             seed=seed,
             progress=told,
-            reload=partial(weighed_by_name, source, groups, chart, noise, loss, mode),
+            reload=partial(weighed_by_name, source, groups, convention, noise, loss, mode),
         )
     if as_json:
         click.echo(report.to_json(), nl=False)
@@ -107,6 +111,7 @@ def _print(report: Report, seconds: float) -> None:
             click.echo(line)
     for line in _skipped(report.factors):
         click.echo(line)
+    _print_off_unit(report.factors)
     click.echo()
     failed = [f.factor for f in report.factors if not f.passed]
     total, which = count(len(report.factors), "factor"), f": {', '.join(failed)}" if failed else ""
@@ -116,6 +121,20 @@ def _print(report: Report, seconds: float) -> None:
         click.echo(f"C was compiled with {report.compiler}")
     else:
         click.echo("C was not checked: there is no C compiler (install gcc or clang, or set CC)")
+
+
+def _print_off_unit(factors: Iterable[FactorReport]) -> None:
+    """What arguments off unit length do, as the code is and with --normalise."""
+    measured = [f for f in factors if f.off_unit]
+    if not measured:
+        return
+    click.echo("\nLargest error, relative to max(1, s), for quaternions and the like off unit length:")
+    offs = [f"off by {o.off:g}" for o in measured[0].off_unit]
+    table(
+        ("factor", *(title for off in offs for title in (off, "normalised"))),
+        [(f.factor, *(f"{x:.1e}" for o in f.off_unit for x in (o.as_is, o.normalised))) for f in measured],
+        right=range(1, 1 + 2 * len(offs)),
+    )
 
 
 def _row(factor: FactorReport) -> tuple[str, ...]:

@@ -6,19 +6,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from liegen.algebra.casadi_backend import ca
-from liegen.algebra.linear import Chain, Matrix, eye, stacked, transpose, zeros
+from liegen.algebra.linear import Chain, Matrix, eye, plain, stacked, transpose, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
 from liegen.trace import Graph, topological
 
+from .contract import contracted
+from .elements import elements
 from .eliminate import Strategy, accumulate, eliminate
 from .local import local_blocks, symbols
 
 
 @dataclass(frozen=True, eq=False)
 class Expressions:
-    """The graph on SX: symbols of each parameter, and the scalars of every node by its identity."""
+    """The graph on SX: symbols of what is stored of each parameter, and every node's scalars by identity."""
 
     inputs: Mapping[str, Coordinates]
     scalars: Mapping[int, Coordinates]
@@ -26,8 +28,10 @@ class Expressions:
 
 def expressions(graph: Graph) -> Expressions:
     """Evaluate every node on fresh symbols of the parameters."""
-    inputs = {p.name: symbols(f"{p.name}_", p.manifold.form.size) for p in graph.parameters}
-    scalars: dict[int, Coordinates] = {id(p.node): inputs[p.name] for p in graph.parameters}
+    inputs = {p.name: symbols(f"{p.name}_", p.storage.size) for p in graph.parameters}
+    scalars: dict[int, Coordinates] = {
+        id(p.node): p.storage.taken(inputs[p.name], normalise=graph.normalise) for p in graph.parameters
+    }
     for node in graph.nodes():
         if id(node) in scalars:
             continue
@@ -44,11 +48,11 @@ def expressions(graph: Graph) -> Expressions:
 class Linearised:
     """The local blocks of a graph: its edges, the vertices to eliminate in order, and what is wanted.
 
-    ``wanted`` has for each (output, variable) the edges that are its Jacobian, one below the other, and
-    their shapes.
+    Chains are in numbers: no factor stands for a group element any more. ``wanted`` has for each
+    (output, variable) the edges that are its Jacobian, one below the other, and their shapes.
     """
 
-    edges: Mapping[tuple[int, int], Chain]
+    edges: Mapping[tuple[int, int], tuple[Matrix, ...]]
     inner: tuple[int, ...]
     wanted: Mapping[tuple[str, str], tuple[tuple[tuple[int, int], tuple[int, int]], ...]]
 
@@ -65,11 +69,14 @@ def jacobians(
     graph: Graph, values: Expressions, strategy: Strategy, *, through_storage: bool = False
 ) -> dict[tuple[str, str], Matrix]:
     """Jacobian of each output by each variable, {(output, variable): matrix}."""
-    return linearised(graph, values, through_storage=through_storage).jacobians(strategy)
+    return linearised(graph, values, through_storage=through_storage)[0].jacobians(strategy)
 
 
-def linearised(graph: Graph, values: Expressions, *, through_storage: bool = False) -> Linearised:
-    """The local Jacobian blocks of all nodes between a variable and an output."""
+def linearised(graph: Graph, values: Expressions, *, through_storage: bool = False) -> tuple[Linearised, ...]:
+    """The local Jacobian blocks of all nodes between a variable and an output.
+
+    Once as they are, and once without what cancels, if anything does.
+    """
     variables = {id(p.node): p for p in graph.parameters if p.variable}
     active = _active(graph)
     edges: dict[tuple[int, int], Chain] = {}
@@ -107,16 +114,16 @@ def linearised(graph: Graph, values: Expressions, *, through_storage: bool = Fal
             edges[sources[v], v] = chart.columns(values.scalars[v])
     begun = {v for v, source in sources.items() if v == source}
     inner = tuple(id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun)
-    return Linearised(
-        edges,
-        inner,
-        {
-            (name, p.name): tuple(
-                ((sources[v], sink), (rows, p.manifold.form.dim)) for sink, rows in sinks[name]
-            )
-            for name, _ in graph.outputs
-            for v, p in variables.items()
-        },
+    wanted = {
+        (name, p.name): tuple(((sources[v], sink), (rows, p.manifold.form.dim)) for sink, rows in sinks[name])
+        for name, _ in graph.outputs
+        for v, p in variables.items()
+    }
+    shorter = contracted(edges, inner, elements(graph.nodes(), values.scalars))
+    forms = [(edges, inner), *([shorter] if shorter else [])]
+    return tuple(
+        Linearised({edge: plain(chain) for edge, chain in found.items()}, left, wanted)
+        for found, left in forms
     )
 
 

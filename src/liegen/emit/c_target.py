@@ -105,6 +105,7 @@ def _function(
     passed = [*(a.name for a in kernel.arguments), *(o.name for o in kernel.outputs)]
     order = "column-major" if column_major else "row-major"
     read = {load.port for load in listing.loads}
+    fixed = {o.name for o in kernel.outputs if o.laid_out}
     return Function(
         name=f"{prefix}{suffix}",
         summary=_summary(kernel, program, order),
@@ -118,7 +119,12 @@ def _function(
         guard=tuple(map(_assign, listing.guard)),
         status=_status(listing),
         outputs=tuple(
-            Output(port.name, port.size, port.name not in values, _stores(port, stores, column_major))
+            Output(
+                port.name,
+                port.size,
+                port.name not in values,
+                _stores(port, stores, column_major and port.name not in fixed),
+            )
             for port, stores in zip(program.outputs, listing.stores, strict=True)
         ),
         jacobians=jacobians,

@@ -184,7 +184,8 @@ def _sampled(function: Function[..., Any], foreign: Foreign, case: Case, samples
             continue
         points.append(Point(values, exact[0]))
         expected.append(exact)
-        found.append(foreign([np.asarray(values[name], dtype=np.float64) for name in parameters]))
+        stored = [p.storage.write(values[p.name].coords) for p in function.graph.parameters]
+        found.append(foreign([np.array(x, dtype=np.float64) for x in stored]))
     if not points and case is _ANY:
         raise DefinitionError(
             f"{function.name}: no sample has a finite residual; give it @factor(sample=...)"

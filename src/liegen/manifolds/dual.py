@@ -7,12 +7,12 @@ that of the rotation, C_k the derivative of M in the direction of the k-th vecto
 from __future__ import annotations
 
 from liegen.algebra import Scalar
+from liegen.algebra.factors import Letter, Turn
 from liegen.algebra.linear import (
     Chain,
     Matrix,
     add,
     beside,
-    block_diagonal,
     dot,
     eye,
     negate,
@@ -20,7 +20,6 @@ from liegen.algebra.linear import (
     skew,
     stacked,
     times,
-    transpose,
     zeros,
 )
 from liegen.coefficients import inverse_jacobian, stumpff
@@ -60,16 +59,18 @@ def lower(diagonal: Matrix, *corners: Matrix) -> Matrix:
     return stacked(beside(diagonal, *(zeros(3, 3),) * n), *rows)
 
 
-def adjoint(R: Matrix, *vectors: Coords) -> Chain:
+def adjoint(R: Letter, *vectors: Coords) -> Chain:
     """[[R, 0], [[t]x R, R]] as a product, for each vector t."""
-    return (lower(eye(3), *map(skew, vectors)), block_diagonal(R, *(R,) * len(vectors)))
+    return (lower(eye(3), *map(skew, vectors)), _turn(R, 1 + len(vectors)))
 
 
-def adjoint_inverse(R: Matrix, *vectors: Coords) -> Chain:
+def adjoint_inverse(R: Letter, *vectors: Coords) -> Chain:
     """The inverse of ``adjoint``: diag(R^T) times [[I, 0], [-[t]x, I]]."""
-    Rt = transpose(R)
-    turned = block_diagonal(Rt, *(Rt,) * len(vectors))
-    return (turned, lower(eye(3), *(skew(negate(t)) for t in vectors)))
+    return (_turn(R.inverted, 1 + len(vectors)), lower(eye(3), *(skew(negate(t)) for t in vectors)))
+
+
+def _turn(R: Letter, blocks: int) -> Turn:
+    return Turn(((R,),) * blocks, (3,) * blocks)
 
 
 def Jr(phi: Coords, *vectors: Coords) -> Matrix:

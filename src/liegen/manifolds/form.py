@@ -16,7 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
-from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
+from liegen.algebra.factors import Adjoint
+from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, negated, product
+
+from .turning import PoseFactors, RotationFactors, Turned, known_matrix
 
 Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
@@ -158,6 +161,14 @@ class GroupForm(ManifoldForm):
         """Ad of a^-1."""
         return self.adjoint(self.inverse(a))
 
+    def Ad(self, a: Coords) -> Chain:
+        """``adjoint`` as one factor that knows its element."""
+        return (Adjoint(self.name, tuple(a), False, self.adjoint(a)),)
+
+    def Ad_inverse(self, a: Coords) -> Chain:
+        """``adjoint_inverse`` as one factor that knows its element."""
+        return (Adjoint(self.name, tuple(a), True, self.adjoint_inverse(a)),)
+
     def Jl(self, d: Coords) -> Matrix:
         """Left Jacobian, Jl(d) = Jr(-d) (micro Lie, eq. 76)."""
         return self.Jr(negate(d))
@@ -176,26 +187,26 @@ class GroupForm(ManifoldForm):
 
     def retract_blocks(self) -> Rule:
         """d/dx = Ad(exp(d))^-1, d/dd = Jr(d) (micro Lie, eq. 82-83)."""
-        return lambda _, _x, d: (self.adjoint_inverse(self.exp(d)), (self.Jr(d),))
+        return lambda _, _x, d: (self.Ad_inverse(self.exp(d)), (self.Jr(d),))
 
     def local_blocks(self) -> Rule:
         """d/dy = Jr^-1(r), d/dx = -Jl^-1(r) (micro Lie, eq. 79, 84)."""
         return lambda r, _x, _y: (
-            (_negative(self.Jl_inv(r, principal=True)),),
+            negated((self.Jl_inv(r, principal=True),)),
             (self.Jr_inv(r, principal=True),),
         )
 
     def compose_blocks(self) -> Rule:
         """d/da = Ad(b^-1), d/db = I (micro Lie, eq. 63-64)."""
-        return lambda _, _a, b: (self.adjoint_inverse(b), (eye(self.dim),))
+        return lambda _, _a, b: (self.Ad_inverse(b), (eye(self.dim),))
 
     def inverse_blocks(self) -> Rule:
         """d/da = -Ad(a) (micro Lie, eq. 62)."""
-        return lambda _, a: (_negated(self.adjoint(a)),)
+        return lambda _, a: (negated(self.Ad(a)),)
 
     def between_blocks(self) -> Rule:
         """d/da = -Ad(c^-1) with c = a^-1 b, d/db = I (micro Lie, eq. 81)."""
-        return lambda c, _a, _b: (_negated(self.adjoint_inverse(c)), (eye(self.dim),))
+        return lambda c, _a, _b: (negated(self.Ad_inverse(c)), (eye(self.dim),))
 
     def local_between(self) -> tuple[Compute, Rule] | None:
         """Value and rule of z.local(x.between(y)) as one operation on (z, x, y), where that saves any.
@@ -217,15 +228,7 @@ class GroupForm(ManifoldForm):
         return product(self.adjoint(a))
 
 
-def _negative(a: Matrix) -> Matrix:
-    return tuple(negate(row) for row in a)
-
-
-def _negated(chain: Chain) -> Chain:
-    return (_negative(chain[0]), *chain[1:])
-
-
-class PoseForm(GroupForm):
+class PoseForm(GroupForm, PoseFactors):
     """A semidirect product of a rotation and a translation: x = (R, t), x p = R p + t."""
 
     turns = True
@@ -243,7 +246,8 @@ class PoseForm(GroupForm):
 
     def rotation_of(self, x: Coords) -> Vector:
         """The rotation's coordinates."""
-        return tuple(x[: self.rotation.size])
+        known, q = known_matrix(x), tuple(x[: self.rotation.size])
+        return q if known is None else Turned(q, known)
 
     def translation_of(self, x: Coords) -> Vector:
         """The translation."""
@@ -291,7 +295,7 @@ class PoseForm(GroupForm):
         return (*rows, (0,) * self.rotation.space + (1,))
 
 
-class RotationForm(GroupForm):
+class RotationForm(GroupForm, RotationFactors):
     """A group of rotations of the plane or of space."""
 
     turns = True

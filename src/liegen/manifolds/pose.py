@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
-from liegen.algebra.linear import Matrix, beside, eye, matvec, negate, stacked, sub, transpose, zeros
+from liegen.algebra.linear import beside, eye, matvec, negated, stacked, sub, transpose, zeros
 from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords, PoseForm
@@ -41,8 +41,8 @@ class Pose(Group, Generic[Q, P, B]):
             """The rotation moves alone, the translation seen from the body."""
             space, dim = form.rotation.space, form.rotation.dim
             turn = form.in_order(eye(dim), zeros(space, dim))
-            move = form.in_order(zeros(dim, space), transpose(form.rotation.matrix(q)))
-            return (stacked(*turn),), (stacked(*move),)
+            move = form.in_order(zeros(dim, space), eye(space))
+            return (stacked(*turn),), (stacked(*move), *form.rotation.turned(q, inverse=True))
 
         return apply(Operation("pose", cls, form.join, blocks, cls.__name__ + "({0}, {1})"), cls, rotation, t)
 
@@ -63,8 +63,7 @@ class Pose(Group, Generic[Q, P, B]):
 
         def blocks(_: Coords, x: Coords) -> Blocks:
             space, dim = form.rotation.space, form.rotation.dim
-            R = form.rotation.matrix(form.rotation_of(x))
-            return ((R, beside(*form.in_order(zeros(space, dim), eye(space)))),)
+            return ((*form.turned(x), beside(*form.in_order(zeros(space, dim), eye(space)))),)
 
         return self._point(
             Operation("translation", self._points, form.translation_of, blocks, "{0}.translation")
@@ -79,9 +78,8 @@ class Pose(Group, Generic[Q, P, B]):
             return tuple(a + b for a, b in zip(moved, form.translation_of(x), strict=True))
 
         def blocks(_: Coords, x: Coords, p: Coords) -> Blocks:
-            R = form.rotation.matrix(form.rotation_of(x))
-            columns = form.in_order(form.rotation.generator(p), eye(form.rotation.space))
-            return (R, beside(*columns)), (R,)
+            moved = matvec(form.rotation.matrix(form.rotation_of(x)), p)
+            return (*form.turned(x), *form.lever(x, p, moved)), form.turned(x)
 
         return self._point(
             Operation("transform_from", self._points, value, blocks, "{0}.transform_from({1})"), p
@@ -96,10 +94,9 @@ class Pose(Group, Generic[Q, P, B]):
                 transpose(form.rotation.matrix(form.rotation_of(x))), sub(p, form.translation_of(x))
             )
 
-        def blocks(q: Coords, x: Coords, _: Coords) -> Blocks:
-            columns = form.in_order(form.rotation.generator(q), eye(form.rotation.space))
-            by_pose: Matrix = tuple(negate(row) for row in beside(*columns))
-            return (by_pose,), (transpose(form.rotation.matrix(form.rotation_of(x))),)
+        def blocks(q: Coords, x: Coords, p: Coords) -> Blocks:
+            by_pose = negated(form.lever(x, q, sub(p, form.translation_of(x))))
+            return by_pose, form.turned(x, inverse=True)
 
         return self._point(Operation("transform_to", self._points, value, blocks, "{0}.transform_to({1})"), p)
 

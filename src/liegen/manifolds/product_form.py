@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from itertools import accumulate, pairwise
 from typing import Any
 
-from liegen.algebra.linear import Chain, Matrix, Vector, block_diagonal, eye
+from liegen.algebra.linear import Chain, Matrix, Vector, block_diagonal, eye, plain
 from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords, GroupForm, ManifoldForm, Rule, Source
@@ -25,8 +25,9 @@ def joined(parts: Sequence[Coords]) -> Vector:
 
 def diagonal_chain(chains: Sequence[Chain]) -> Chain:
     """Chains of the parts as one chain of block diagonal factors."""
-    n = max(map(len, chains))
-    padded = [(*(eye(len(c[0])),) * (n - len(c)), *c) for c in chains]
+    flat = [plain(chain) for chain in chains]
+    n = max(map(len, flat))
+    padded = [(*(eye(len(c[0])),) * (n - len(c)), *c) for c in flat]
     return tuple(block_diagonal(*factors) for factors in zip(*padded, strict=True))
 
 

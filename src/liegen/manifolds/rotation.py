@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Generic, Self, TypeVar, overload
 
-from liegen.algebra.linear import matvec, negate, transpose
+from liegen.algebra.linear import matvec, negated, transpose
 
 from .form import Blocks, Coords, RotationForm
 from .group import Group, tangent_class
@@ -25,8 +25,7 @@ class Rotation(Group, Generic[P]):
         form = self.form
 
         def blocks(_: Coords, q: Coords, v: Coords) -> Blocks:
-            R = form.matrix(q)
-            return (R, form.generator(v)), (R,)
+            return (*form.turned(q), *form.lever(q, v, matvec(form.matrix(q), v))), form.turned(q)
 
         return self._turn(
             Operation(
@@ -43,9 +42,8 @@ class Rotation(Group, Generic[P]):
         """R^-1 v."""
         form = self.form
 
-        def blocks(w: Coords, q: Coords, _: Coords) -> Blocks:
-            turned = tuple(negate(row) for row in form.generator(w))
-            return (turned,), (transpose(form.matrix(q)),)
+        def blocks(w: Coords, q: Coords, v: Coords) -> Blocks:
+            return negated(form.lever(q, w, v)), form.turned(q, inverse=True)
 
         def value(q: Coords, v: Coords) -> Any:
             return matvec(transpose(form.matrix(q)), v)

@@ -80,10 +80,10 @@ class SE23Form(GroupForm):
         return (*phi, *matvec(V, a[_POSITION]), *matvec(V, a[_VELOCITY]))
 
     def adjoint(self, a: Coords) -> Chain:
-        return dual.adjoint(self.rotation.matrix(a[:4]), a[_POSITION], a[_VELOCITY])
+        return dual.adjoint(self.rotation.letter(a[:4]), a[_POSITION], a[_VELOCITY])
 
     def adjoint_inverse(self, a: Coords) -> Chain:
-        return dual.adjoint_inverse(self.rotation.matrix(a[:4]), a[_POSITION], a[_VELOCITY])
+        return dual.adjoint_inverse(self.rotation.letter(a[:4]), a[_POSITION], a[_VELOCITY])
 
     def Jr(self, d: Coords) -> Matrix:
         return dual.Jr(d[:3], d[3:6], d[6:])

@@ -57,10 +57,10 @@ class SE3Form(PoseForm):
 
     def adjoint(self, a: Coords) -> Chain:
         """[[R, 0], [[t]x R, R]] as a product (micro Lie, eq. 175)."""
-        return dual.adjoint(self.rotation.matrix(a[:4]), a[4:])
+        return dual.adjoint(self.rotation.letter(a[:4]), a[4:])
 
     def adjoint_inverse(self, a: Coords) -> Chain:
-        return dual.adjoint_inverse(self.rotation.matrix(a[:4]), a[4:])
+        return dual.adjoint_inverse(self.rotation.letter(a[:4]), a[4:])
 
     def Jr(self, d: Coords) -> Matrix:
         return dual.Jr(d[:3], d[3:])

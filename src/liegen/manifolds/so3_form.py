@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from liegen.algebra import Scalar, lt, select
-from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, negate, scale, skew
+from liegen.algebra.factors import Letter, Turn
+from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, matvec, negate, scale, skew, transpose
 from liegen.coefficients import inverse_jacobian, log_factor, stumpff
 
 from .form import Blocks, Compute, Coords, RotationForm, Rule
 from .relative import relative_rule
+from .turning import Turned, known_matrix
 
 
 def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:
@@ -55,7 +57,8 @@ class SO3Form(RotationForm):
         )
 
     def inverse(self, a: Coords) -> Vector:
-        return (-a[0], -a[1], -a[2], a[3])
+        known, q = known_matrix(a), (-a[0], -a[1], -a[2], a[3])
+        return q if known is None else Turned(q, transpose(known))
 
     def exp(self, d: Coords) -> Vector:
         """(sin(t/2)/t d, cos(t/2)) with t = |d|."""
@@ -67,7 +70,12 @@ class SO3Form(RotationForm):
         return scale(_log_scale(a), a[:3])
 
     def adjoint(self, a: Coords) -> Chain:
-        return (self.matrix(a),)
+        return self.turned(a)
+
+    def adjoint_inverse(self, a: Coords) -> Chain:
+        # the matrix of q^-1 has the same entries as R^T, but its signs cost a few operations less in between
+        letter = Letter(tuple(a), transpose(self.matrix(self.inverse(a))), inverse=True)
+        return (Turn(((letter,),), (3,)),)
 
     def Jr(self, d: Coords) -> Matrix:
         """I - c2 [d]x + c3 [d]x^2 (micro Lie, eq. 143)."""
@@ -125,6 +133,10 @@ class SO3Form(RotationForm):
         )
 
     def matrix(self, a: Coords) -> Matrix:
+        known = known_matrix(a)
+        return self._computed(a) if known is None else known
+
+    def _computed(self, a: Coords) -> Matrix:
         x, y, z, w = a
         x2, y2, z2 = x * 2, y * 2, z * 2
         xx, yy, zz = x * x2, y * y2, z * z2
@@ -138,6 +150,9 @@ class SO3Form(RotationForm):
 
     def rotate(self, a: Coords, v: Coords) -> Vector:
         """v + w u + q x u with u = 2 q x v."""
+        known = known_matrix(a)
+        if known is not None:
+            return matvec(known, v)
         *q, w = a
         u = scale(2, cross(q, v))
         return tuple(p + w * r + s for p, r, s in zip(v, u, cross(q, u), strict=True))

@@ -19,6 +19,8 @@ from .graph import topological as topological
 from .jacobian_text import jacobian_formulas as jacobian_formulas
 from .latex_text import latex as latex
 from .latex_text import latex_rows as latex_rows
+from .storing import LayoutLike as LayoutLike
+from .storing import in_layouts as in_layouts
 from .tracer import Outputs as Outputs
 from .tracer import Signature as Signature
 from .tracer import inlined as inlined

@@ -175,13 +175,22 @@ def _places(node: Node) -> Blocks:
         return tuple(_slope(slope, k, node) for k, slope in enumerate(_SLOPE[name]))
     own = _own(node)
     if charted(node):
-        return _derivatives(name, len(operands))
+        return _of_chart(node)
     flat = additive(node) or issubclass(own, SO2)
     curved: Mapping[str, Blocks] = _GROUP if exponential(node) else {}
     for table in (_ADDITIVE if flat else curved, _parts(node), _VECTOR):
         if name in table:
             return table[name]
     return _derivatives(name, len(operands))
+
+
+def _of_chart(node: Node) -> Blocks:
+    """The Jacobians of a chart's maps, named like those of the exponential with the chart in brackets."""
+    name = node.operation.parameters[0].name
+    first, second = {"local": ("Jl^-1 of", "Jr^-1 of"), "retract": ("Ad of", "Jr of")}[node.operation.name]
+    detail = "chart" if "(" in name else name
+    by_first = Block(first, (0, 1), detail, negative=node.operation.name == "local")
+    return by_first, Block(second, (0, 1), detail)
 
 
 def _derivatives(name: str, operands: int) -> Blocks:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from liegen.charts import GTSAM, Preset
 from liegen.errors import Site
+from liegen.layouts import OWN, Storage, Stored, storage
 from liegen.manifolds import Manifold, Node
 
 from .frame_names import Declared
@@ -23,6 +24,12 @@ class Parameter:
     node: Node
     frames: Declared | None = None
     chart: Preset = GTSAM  # of its Jacobians' columns
+    layout: Stored = OWN
+
+    @property
+    def storage(self) -> Storage:
+        """How it is stored."""
+        return storage(self.manifold.form, self.layout)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +64,8 @@ class Graph:
     calls: tuple[Call, ...] = ()
     frames: FrameReport = field(default_factory=FrameReport)
     chart: Preset = GTSAM  # of local and retract, and of outputs on groups
+    layout: Stored = OWN  # of the outputs
+    normalise: bool = False  # whether arguments are brought to unit length
 
     def nodes(self) -> tuple[Node, ...]:
         """All nodes that outputs and domain need, operands first."""

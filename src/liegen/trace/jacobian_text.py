@@ -11,11 +11,17 @@ from .graph import Graph
 from .jacobian_lines import jacobian_lines
 from .notation import ATOM, TERMINAL, Text
 
+_RIGHT = "Jr(d), Jr^-1(d): right Jacobian of Exp at d and its inverse"
 #: What occurs in a line, and what it means.
 _LEGEND: Mapping[str, str] = {
     "Ad(": "Ad(x): adjoint, x Exp(d) = Exp(Ad(x) d) x",
-    "Jr": "Jr(d), Jr^-1(d): right Jacobian of Exp at d and its inverse",
-    "Jl": "Jl^-1(d): inverse of the left Jacobian, Jl(d) = Jr(-d)",
+    "Jr(": _RIGHT,
+    "Jr^-1(": _RIGHT,
+    "Jl^-1(": "Jl^-1(d): inverse of the left Jacobian, Jl(d) = Jr(-d)",
+    "Jr^-1[": "Jr^-1[c](x, y): d x.local(y Exp(e))/de at 0 in the chart c; Jr^-1(res) in the chart of Exp",
+    "Jl^-1[": "Jl^-1[c](x, y): -d (x Exp(e)).local(y)/de at 0 in the chart c; Jl^-1(res) in the chart of Exp",
+    "Jr[": "Jr[c](x, d): the right Jacobian of d -> x.retract(d) in the chart c; Jr(d) in the chart of Exp",
+    "Ad[": "Ad[c](x, d): how x.retract(d) moves with x in the chart c; Ad(Exp(d)^-1) in the chart of Exp",
     "R(": "R(x): rotation matrix of x",
     "]x": "[v]x: the matrix with [v]x w = v x w",
     "J ": "J: quarter turn [[0, -1], [1, 0]]",
@@ -36,7 +42,7 @@ def legend(lines: tuple[str, ...]) -> tuple[str, ...]:
     """The notation that occurs in the lines of :func:`jacobian_formulas`."""
     right = [line.partition(" = ")[2] for line in lines if "_D_" in line.partition(" = ")[0]]
     text = " " + " ".join(right)
-    return tuple(meaning for mark, meaning in _LEGEND.items() if mark in text)
+    return tuple(dict.fromkeys(meaning for mark, meaning in _LEGEND.items() if mark in text))
 
 
 def jacobian_formulas(graph: Graph) -> tuple[str, ...]:

@@ -98,6 +98,19 @@ HEADS: Mapping[str, tuple[Layout, Layout]] = {
     "Jr": (Layout("Jr(#0)"), Layout(r"J_r\left(#0\right)")),
     "Jr^-1": (Layout("Jr^-1(#0)"), Layout(r"J_r^{-1}\left(#0\right)")),
     "Jl^-1": (Layout("Jl^-1(#0)"), Layout(r"J_l^{-1}\left(#0\right)")),
+    "Jr of": (Layout("Jr[#d](#*)", join=", "), Layout(r"J_{r,\,\text{#d}}\left(#*\right)", join=r",\, ")),
+    "Jr^-1 of": (
+        Layout("Jr^-1[#d](#*)", join=", "),
+        Layout(r"J_{r,\,\text{#d}}^{-1}\left(#*\right)", join=r",\, "),
+    ),
+    "Jl^-1 of": (
+        Layout("Jl^-1[#d](#*)", join=", "),
+        Layout(r"J_{l,\,\text{#d}}^{-1}\left(#*\right)", join=r",\, "),
+    ),
+    "Ad of": (
+        Layout("Ad[#d](#*)", join=", "),
+        Layout(r"\mathrm{Ad}_{\text{#d}}\left(#*\right)", join=r",\, "),
+    ),
     "Exp": (Layout("Exp(#0)"), Layout(r"\mathrm{Exp}\left(#0\right)")),
     "inverse": (Layout("#0^-1"), Layout("#0^{-1}", POWER, (ATOM,))),
     "transpose": (Layout("#0^T", ATOM, (POWER,)), Layout(r"#0^{\top}", POWER, (ATOM,))),

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from liegen.charts import Preset
 from liegen.manifolds import Vector
 from liegen.trace import Graph, Parameter
 
@@ -86,7 +85,8 @@ def _compared(
         ends = results[name]
         if not np.isfinite(ends).all():
             return None
-        changes = _changes(node.manifold, graph.chart, _unwrapped(graph, name, sample.values, moved, ends))
+        smooth = _unwrapped(graph, name, sample.values, moved, ends).reshape(len(ends), -1)
+        changes = _changes(node.manifold, graph, smooth)
         changes = changes.reshape(len(STEPS), p.manifold.form.dim, 2, -1)
         size = max(1.0, float(np.abs(ends).max()), *(abs(x) for v in sample.values.values() for x in v))
         estimate, slope = _best(changes, size)
@@ -123,16 +123,18 @@ def _moved(values: Values, p: Parameter) -> list[dict[str, tuple[float, ...]]]:
         for column in range(p.manifold.form.dim):
             for sign in (1.0, -1.0):
                 d = [sign * step if i == column else 0.0 for i in range(p.manifold.form.dim)]
-                moved.append({**values, p.name: reference.retract(p.manifold, values[p.name], d, p.chart)})
+                end = reference.retract(p.manifold, values[p.name], d, p.chart, p.layout)
+                moved.append({**values, p.name: end})
     return moved
 
 
-def _changes(manifold: Any, chart: Preset, ends: Array) -> Array:
+def _changes(manifold: Any, graph: Graph, ends: Array) -> Array:
     """The tangent vectors from the last result to the others."""
     if _is_vector(manifold):
         return ends[:-1] - ends[-1]
     start = tuple(ends[-1].tolist())
-    return np.array([reference.local(manifold, start, tuple(end.tolist()), chart) for end in ends[:-1]])
+    others = [tuple(end.tolist()) for end in ends[:-1]]
+    return np.array([reference.local(manifold, start, end, graph.chart, graph.layout) for end in others])
 
 
 def _is_vector(manifold: Any) -> bool:

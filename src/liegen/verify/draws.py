@@ -120,7 +120,7 @@ def stored(function: AnyFunction, values: Mapping[str, Value]) -> dict[str, tupl
                 f"{function.graph.site}: {function.name}: its sampler gave {given} for {p.name!r}; "
                 f"it must return a {p.manifold.__name__} for it"
             )
-        doubles[p.name] = tuple(float(c) for c in value.coords)
+        doubles[p.name] = tuple(float(c) for c in p.storage.write(value.coords))
     return doubles
 
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.layouts import storage
 from liegen.trace import Graph
 
 from . import reference
@@ -85,7 +86,8 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
         bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))
         lost = extra / np.broadcast_to(plain, bound.shape).min(axis=0)
         kept = np.isfinite(stacked).all(axis=(0, 2)) & np.isfinite(slack)
-        quaternions = dict(graph.outputs)[name].manifold.form.quaternions if is_value else ()
+        form = dict(graph.outputs)[name].manifold.form if is_value else None
+        quaternions = storage(form, graph.layout).quaternions if form else ()
         blocks.append(Block(name, is_value, stacked, bound, lost, kept, quaternions))
     skipped = _reasons(samples, slack, blocks)
     return Expected(tuple(samples), tuple(blocks), slack, skipped)
@@ -143,7 +145,9 @@ def _nearby(graph: Graph, sample: Sample) -> Iterator[Values]:
 def _outputs(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
     elements = reference.outputs(graph, values, flip=flip)
     return {
-        name: np.array(reference.to_coords(node.manifold, elements[name]), dtype=np.float64)
+        name: np.array(
+            reference.to_coords(node.manifold, elements[name], layout=graph.layout), dtype=np.float64
+        )
         for name, node in graph.outputs
     }
 

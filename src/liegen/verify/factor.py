@@ -20,6 +20,7 @@ from .gradient import gradient, not_applicable
 from .in_place import in_place
 from .report import Check, FactorReport
 from .taylor import taylor
+from .unit_length import off_unit
 
 Array = NDArray[np.float64]
 
@@ -33,9 +34,16 @@ def check_factor(
     function: AnyFunction, place: Workspace, samples: int, seed: int, *, conditioned: bool
 ) -> FactorReport:
     """Draw ``samples`` samples and run every check. ``conditioned`` as in :func:`expect`."""
+    checks = _checks(function, place, samples, seed, conditioned=conditioned)
+    return FactorReport(function.name, checks, off_unit(function, seed))
+
+
+def _checks(
+    function: AnyFunction, place: Workspace, samples: int, seed: int, *, conditioned: bool
+) -> tuple[Check, ...]:
     drawn = draw_samples(function, samples, seed)
     if not drawn.inside:
-        return FactorReport(function.name, (_nothing(function, drawn),))
+        return (_nothing(function, drawn),)
     computed = backends(function.kernel, place)
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
     weighting = function.weighting if function.weighting and function.weighting.loss else None
@@ -48,7 +56,7 @@ def check_factor(
     if weighting:
         branches = compare(expected, results[TAKEN])[0].branch.tolist()
         value, _ = accuracy(expected, results, drawn.refused)
-        checks = (
+        return (
             value,
             gradient(function, weighting, drawn.inside, results, branches),
             agreement(expected, results | singles),
@@ -56,21 +64,13 @@ def check_factor(
             *(not_applicable(name, weighting.mode.name) for name in ("Jacobian", "differences", "Taylor")),
             _compiled(place),
         )
-        return FactorReport(function.name, checks)
-    return FactorReport(
-        function.name,
-        (
-            *accuracy(expected, results, drawn.refused, has_jacobians=bool(function.kernel.variables)),
-            agreement(expected, results | singles),
-            domain(function, drawn, computed, seed),
-            *(
-                _slopes(function.graph, drawn, expected, computed, results)
-                if function.kernel.variables
-                else ()
-            ),
-            *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
-            _compiled(place),
-        ),
+    return (
+        *accuracy(expected, results, drawn.refused, has_jacobians=bool(function.kernel.variables)),
+        agreement(expected, results | singles),
+        domain(function, drawn, computed, seed),
+        *(_slopes(function.graph, drawn, expected, computed, results) if function.kernel.variables else ()),
+        *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
+        _compiled(place),
     )
 
 

@@ -30,11 +30,21 @@ class Check:
 
 
 @dataclass(frozen=True)
+class OffUnit:
+    """The largest error where quaternions and the like are ``off`` unit length, as is and with normalise."""
+
+    off: float
+    as_is: float
+    normalised: float
+
+
+@dataclass(frozen=True)
 class FactorReport:
-    """All checks of one factor."""
+    """All checks of one factor, and what arguments off unit length do to it."""
 
     factor: str
     checks: tuple[Check, ...]
+    off_unit: tuple[OffUnit, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -59,7 +69,12 @@ class Report:
     def to_json(self) -> str:
         """The report as JSON; numbers that are not finite become strings."""
         factors = [
-            {"factor": f.factor, "passed": f.passed, "checks": [_finite(asdict(c)) for c in f.checks]}
+            {
+                "factor": f.factor,
+                "passed": f.passed,
+                "checks": [_finite(asdict(c)) for c in f.checks],
+                "off_unit": [_finite(asdict(o)) for o in f.off_unit],
+            }
             for f in self.factors
         ]
         content = {

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from liegen.algebra.casadi_backend import ca
+from liegen.algebra.linear import plain
 from liegen.differentiate.local import local_blocks
 from liegen.errors import DomainError
 from liegen.manifolds import Leaf, Node
@@ -78,8 +79,11 @@ def first_not_finite(graph: Graph, values: Mapping[str, Any], *, derivative: boo
 
 
 def _evaluated(graph: Graph, values: Mapping[str, Any]) -> Iterator[tuple[Node, Any, list[Any]]]:
-    coords: dict[int, Any] = {id(p.node): [np.float64(c) for c in values[p.name]] for p in graph.parameters}
     with np.errstate(all="ignore"):
+        coords: dict[int, Any] = {
+            id(p.node): p.storage.taken([np.float64(c) for c in values[p.name]], normalise=graph.normalise)
+            for p in graph.parameters
+        }
         for node in graph.nodes():
             if id(node) in coords:
                 continue
@@ -103,5 +107,5 @@ def _block_entries(node: Node, result: Any, operands: list[Any]) -> list[float]:
     if not any(wanted) or node.manifold.form.dim == 0:
         return []
     blocks = local_blocks(node.operation, value, lifted, [n.manifold for n in node.operands], wanted)
-    entries = [x for chain in blocks if chain is not None for m in chain for row in m for x in row]
+    entries = [x for chain in blocks if chain is not None for m in plain(chain) for row in m for x in row]
     return [float(ca.evalf(ca.SX(x))) for x in entries]

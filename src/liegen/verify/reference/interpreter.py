@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from liegen.layouts import OWN, Stored
+
 from . import cameras, groups, tangent, vectors, weights
 from .calls import Call, Rule
 from .charts import space_in
+from .layouts import load, store
 from .logarithms import PRINCIPAL, Branch
 from .matrix import Element, Vector, mp
-from .spaces import load, space_of
 
 if TYPE_CHECKING:
     from liegen.charts import Preset
@@ -69,7 +71,7 @@ def evaluate(
 
 def loaded(graph: Graph, sample: Sample) -> dict[Node, Element]:
     """The elements of all parameters at the working precision."""
-    return {p.node: load(p.manifold, sample[p.name]) for p in graph.parameters}
+    return {p.node: load(p.manifold, sample[p.name], p.layout) for p in graph.parameters}
 
 
 def run(
@@ -100,7 +102,7 @@ def run(
 def _value(node: Node, operands: Sequence[Element], branch: Branch) -> Element:
     operation: Any = node.operation
     if operation.name == "constant":
-        return load(operation.result, operation.coords)
+        return load(operation.result, operation.coords, OWN)
     return OPERATIONS[operation.name](Call(operation, node.operands, operands, branch))
 
 
@@ -123,33 +125,41 @@ def difference(manifold: type[Value], a: Element, b: Element, chart: Preset | No
 
 
 def from_coords(manifold: type[Value], coords: Sequence[float]) -> Element:
-    """The element that stored floats stand for."""
+    """The element that floats in liegen's own storage stand for."""
     with mp.workdps(DIGITS):
-        return load(manifold, coords)
+        return load(manifold, coords, OWN)
 
 
 def to_coords(
-    manifold: type[Value], element: Element, like: Sequence[float] | None = None
+    manifold: type[Value], element: Element, like: Sequence[float] | None = None, layout: Stored = OWN
 ) -> tuple[float, ...]:
     """Storage rounded to doubles; of q and -q the one nearer to ``like``, or with w >= 0."""
     with mp.workdps(DIGITS):
-        return tuple(float(x) for x in space_of(manifold).store(element, like))
+        return tuple(float(x) for x in store(manifold, element, layout, like))
 
 
 def retract(
-    manifold: type[Value], coords: Sequence[float], d: Sequence[float], chart: Preset | None = None
+    manifold: type[Value],
+    coords: Sequence[float],
+    d: Sequence[float],
+    chart: Preset | None = None,
+    layout: Stored = OWN,
 ) -> tuple[float, ...]:
     """``coords`` moved by the tangent vector ``d``, rounded to doubles; a quaternion keeps its side."""
     with mp.workdps(DIGITS):
         step = tuple(mp.mpf(float(x)) for x in d)
-        moved = space_in(manifold, chart).retract(load(manifold, coords), step, Branch())
-        return to_coords(manifold, moved, coords)
+        moved = space_in(manifold, chart).retract(load(manifold, coords, layout), step, Branch())
+        return to_coords(manifold, moved, coords, layout)
 
 
 def local(
-    manifold: type[Value], a: Sequence[float], b: Sequence[float], chart: Preset | None = None
+    manifold: type[Value],
+    a: Sequence[float],
+    b: Sequence[float],
+    chart: Preset | None = None,
+    layout: Stored = OWN,
 ) -> tuple[float, ...]:
     """The tangent vector at ``a`` that leads to ``b``, rounded to doubles."""
     with mp.workdps(DIGITS):
-        ends = load(manifold, a), load(manifold, b)
+        ends = load(manifold, a, layout), load(manifold, b, layout)
         return tuple(float(x) for x in space_in(manifold, chart).local(*ends, PRINCIPAL))

@@ -10,7 +10,6 @@ from . import extended, galilean, sphere
 from .contract import GroupSpace, Space, Store
 from .logarithms import Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
-    Element,
     Matrix,
     Number,
     Vector,
@@ -64,7 +63,7 @@ def _load_so2(coords: Vector) -> Matrix:
     return ((c, -s), (s, c))
 
 
-def _load_so3(q: Vector) -> Matrix:
+def load_so3(q: Vector) -> Matrix:
     """Of the normalised quaternion (x, y, z, w)."""
     x, y, z, w = q
     n = dot(q, q)
@@ -78,7 +77,7 @@ def _load_so3(q: Vector) -> Matrix:
     )
 
 
-def _store_so3(R: Matrix, like: Sequence[float] | None) -> Vector:
+def store_so3(R: Matrix, like: Sequence[float] | None) -> Vector:
     """The unit quaternion, from the row of its outer product 4 q q^T with the largest diagonal entry."""
     (a, b, c), (d, e, f), (g, h, i) = R
     rows = (
@@ -128,7 +127,7 @@ def _hat_so2(angle: Number) -> Matrix:
 _SO2 = _matrix_group(
     1, _load_so2, lambda R, _: (R[0][0], R[1][0]), transpose, lambda d: expm(_hat_so2(d[0])), log_so2
 )
-_SO3 = _matrix_group(3, _load_so3, _store_so3, transpose, lambda d: expm(skew(d)), log_so3)
+_SO3 = _matrix_group(3, load_so3, store_so3, transpose, lambda d: expm(skew(d)), log_so3)
 _SE2 = _matrix_group(
     3,
     lambda c: pose(_load_so2(c[:2]), c[2:]),
@@ -139,17 +138,17 @@ _SE2 = _matrix_group(
 )
 _SE3 = _matrix_group(
     6,
-    lambda c: pose(_load_so3(c[:4]), c[4:]),
-    lambda T, like: (*_store_so3(rotation_of(T), like), *translation_of(T)),
+    lambda c: pose(load_so3(c[:4]), c[4:]),
+    lambda T, like: (*store_so3(rotation_of(T), like), *translation_of(T)),
     _invert_pose,
     lambda d: _exp_pose(skew(d[:3]), length(d[:3]), d[3:]),
     log_se3,
 )
 _SE23 = _matrix_group(
     9,
-    lambda c: extended.extended(_load_so3(c[:4]), c[4:7], c[7:]),
+    lambda c: extended.extended(load_so3(c[:4]), c[4:7], c[7:]),
     lambda T, like: (
-        *_store_so3(extended.rotation_of(T), like), *extended.column_of(T, 3), *extended.column_of(T, 4),
+        *store_so3(extended.rotation_of(T), like), *extended.column_of(T, 3), *extended.column_of(T, 4),
     ),
     extended.inverse,
     extended.exp,
@@ -162,9 +161,9 @@ _NAV_STATE = replace(
 )
 _GAL3 = _matrix_group(
     10,
-    lambda c: galilean.event(_load_so3(c[:4]), c[4:7], c[7:10], c[10:]),
+    lambda c: galilean.event(load_so3(c[:4]), c[4:7], c[7:10], c[10:]),
     lambda T, like: (
-        *_store_so3(extended.rotation_of(T), like),
+        *store_so3(extended.rotation_of(T), like),
         *extended.column_of(T, 4), *extended.column_of(T, 3), T[3][4],
     ),
     galilean.inverse,
@@ -261,8 +260,3 @@ def _sized(form: ManifoldForm) -> list[tuple[int, int]]:
 
 def _numbers(coords: Sequence[float]) -> Vector:
     return tuple(mp.mpf(float(c)) for c in coords)
-
-
-def load(manifold: type[Value], coords: Sequence[float]) -> Element:
-    """The element that stored floats stand for, at the working precision; nothing is rounded."""
-    return space_of(manifold).load(_numbers(coords))
