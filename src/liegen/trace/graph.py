@@ -9,7 +9,7 @@ from liegen.charts import GTSAM, Preset
 from liegen.errors import Site
 from liegen.manifolds import Manifold, Node
 
-from .frame_names import Declared
+from .frame_declared import Declared
 from .frame_report import FrameReport
 
 
