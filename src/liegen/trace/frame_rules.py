@@ -204,7 +204,7 @@ def rule(node: Node) -> Rule:
     subject = result if makes else node.operands[0].manifold
     table = next((rules for base, rules in _TABLES if issubclass(subject, base)), None)
     table = table or (_MAPS if is_map(subject) else VECTORS)
-    # R3.exp, the identity, is shown with its class; exp(v) of every entry is not
-    if table is VECTORS and name == "exp" and not node.operation.show.startswith("exp"):
+    # R3.exp(v) and v.log() are the identity, exp(v) and log(v) functions of every entry
+    if table is VECTORS and name in ("exp", "log") and not node.operation.show.startswith(f"{name}("):
         return first
     return table.get(name, _nothing)
