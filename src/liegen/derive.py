@@ -77,9 +77,9 @@ def noise_lines(graph: Graph, weighting: Weighting | None) -> tuple[str, ...]:
     """Noise, loss, mode, frame and formulas of a weighting."""
     if not weighting:
         return ()
-    ((name, _),) = unwhitened(graph).outputs
+    ((name, node),) = unwhitened(graph).outputs
     variables = [p.name for p in graph.parameters if p.variable]
-    return weighting.lines(name, variables, graph.frames.noise)
+    return weighting.lines(name, node.manifold.form.dim, variables, graph.frames.noise)
 
 
 def lowered(
@@ -111,11 +111,11 @@ def _argument(name: str, form: ManifoldForm, *, variable: bool) -> Argument:
 
 def _weight(weight: Weight) -> Argument:
     storage = tuple("_".join(map(str, place)) for place in np.ndindex(weight.shape))
-    return Argument(weight.name, "numbers", storage, 0, False, weight.shape, weight.meaning)
+    return Argument(weight.name, "numbers", storage, 0, False, weight.meaning, shape=weight.shape)
 
 
 def _output(name: str, form: ManifoldForm) -> Output:
-    return Output(name, form.name, form.storage, form.dim, form.shape)
+    return Output(name, form.name, form.storage, form.dim, shape=form.shape)
 
 
 def _with_parts(form: ManifoldForm) -> tuple[ManifoldForm, ...]:

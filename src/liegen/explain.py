@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from liegen.define import Function
+from liegen.derive import weights_of
 from liegen.kernel import Kernel
 from liegen.manifolds import Leaf
 from liegen.trace import Graph, jacobian_formulas, latex
@@ -52,10 +53,11 @@ def summary(function: AnyFunction) -> Summary:
     """Name, arguments, outputs and the first line of the docstring; nothing is derived."""
     graph = function.graph
     lines = graph.doc.strip().splitlines()
+    kinds = {w.name: w.kind for w in weights_of(function.plain, function.weighting)}
     return Summary(
         name=graph.name,
         variables={p.name: p.manifold.form.name for p in graph.parameters if p.variable},
-        given={p.name: p.manifold.form.name for p in graph.parameters if not p.variable},
+        given={p.name: kinds.get(p.name, p.manifold.form.name) for p in graph.parameters if not p.variable},
         outputs={n: (node.manifold.form.name, node.manifold.form.dim) for n, node in graph.outputs},
         meaning=lines[0] if lines else "",
     )
