@@ -21,7 +21,6 @@ from liegen.trace import (
     Outputs,
     Signature,
     inlined,
-    latex,
     trace,
 )
 
@@ -113,7 +112,9 @@ class Function(Generic[P, T]):
 
     def _repr_latex_(self) -> str:
         """The formula and its Jacobians, as notebooks show them."""
-        return f"$$\n{latex(self.graph)}\n$$"
+        from liegen.derive import function_latex
+
+        return f"$$\n{function_latex(self.plain, self.weighting)}\n$$"
 
     def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
         free = self._free

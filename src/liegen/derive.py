@@ -19,7 +19,7 @@ from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program
 from liegen.program.lower import lower
 from liegen.program.passes import optimise
-from liegen.trace import Graph, formula, jacobian_formulas
+from liegen.trace import Graph, aligned, formula, jacobian_formulas, latex, latex_name, latex_rows
 
 
 def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool = False) -> Kernel:
@@ -80,6 +80,15 @@ def noise_lines(graph: Graph, weighting: Weighting | None) -> tuple[str, ...]:
     ((name, node),) = unwhitened(graph).outputs
     variables = [p.name for p in graph.parameters if p.variable]
     return weighting.lines(name, node.manifold.form.dim, variables, graph.frames.noise)
+
+
+def function_latex(graph: Graph, weighting: Weighting | None) -> str:
+    """Residual and Jacobians in LaTeX, before noise and loss, and then what these make of them."""
+    if not weighting:
+        return latex(graph)
+    shown = unwhitened(graph)
+    variables = [latex_name(p.name) for p in graph.parameters if p.variable]
+    return aligned((*latex_rows(shown), *weighting.latex_rows(latex_name(shown.outputs[0][0]), variables)))
 
 
 def lowered(

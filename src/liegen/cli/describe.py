@@ -6,7 +6,15 @@ import json
 
 import click
 
-from .shared import chosen, groups_option, noise_options, source_argument, table, weighed
+from .shared import (
+    chart_option,
+    chosen,
+    groups_option,
+    noise_options,
+    source_argument,
+    table,
+    weighed,
+)
 
 
 @click.command("list")
@@ -31,12 +39,14 @@ def list_factors(source: str | None, groups: tuple[str, ...], as_json: bool) -> 
 @click.argument("name")
 @source_argument
 @groups_option
+@chart_option
 @noise_options
 @click.option("--latex", "as_latex", is_flag=True, help="Print the residual and its Jacobians in LaTeX.")
 def explain(
     name: str,
     source: str | None,
     groups: tuple[str, ...],
+    chart: str | None,
     noise: str | None,
     loss: str | None,
     mode: str | None,
@@ -45,5 +55,5 @@ def explain(
     """Show the residual, its Jacobians at group level, and the operations after each pass."""
     from liegen.explain import explanation, latex_explanation
 
-    (function,) = weighed(chosen(source, [name], groups), noise, loss, mode)
+    (function,) = weighed(chosen(source, [name], groups, chart), noise, loss, mode)
     click.echo((latex_explanation if as_latex else explanation)(function), nl=False)

@@ -64,11 +64,12 @@ class Weighed:
 class Mode:
     """How a loss becomes part of least squares.
 
-    ``formula`` has the residual, the Jacobian, and what they use, as text.
+    ``formula`` has the residual, the Jacobian, and what they use, as text; ``latex`` the same in LaTeX.
     """
 
     name: str
     formula: tuple[str, str, str]
+    latex: tuple[str, str, str]
     weigh: Callable[[Loss, Sequence[Scalar], Vector], Weighed]
 
 
@@ -101,13 +102,23 @@ def _along(u: Vector, ratio: Scalar, J: Matrix) -> Matrix:
 MODES: Mapping[str, Mode] = {
     mode.name: mode
     for mode in (
-        Mode("irls", ("sqrt(w) u", "sqrt(w) {0}", "w = rho'(s)"), _reweighted),
+        Mode(
+            "irls",
+            ("sqrt(w) u", "sqrt(w) {0}", "w = rho'(s)"),
+            (r"\sqrt{w}\, u", r"\sqrt{w}\,", r"w = \rho'(s)"),
+            _reweighted,
+        ),
         Mode(
             "triggs",
             (
                 "sqrt(w) / (1 - alpha_t) u",
                 "sqrt(w) (I - alpha_t u u^T / s) {0}",
                 "w = rho'(s), alpha_t = 1 - sqrt(1 + 2 s rho''(s) / w), at most 1 - 1/64",
+            ),
+            (
+                r"\frac{\sqrt{w}}{1 - \alpha_t}\, u",
+                r"\sqrt{w} \left(I - \frac{\alpha_t}{s} u u^{\top}\right)",
+                r"w = \rho'(s),\; \alpha_t = 1 - \sqrt{1 + 2 s \rho''(s) / w}",
             ),
             _corrected,
         ),
@@ -178,6 +189,21 @@ class Weighting:
             f"u = {u}, s = |u|^2, {where}",
             f"res = {value}",
             *(f"res_D_{v} = {jacobian.format(J)}" for v, J in zip(variables, slopes, strict=True)),
+        )
+
+    def latex_rows(self, residual: str, variables: Sequence[str]) -> tuple[str, ...]:
+        r"""Rows of an ``aligned`` environment: what ``res`` and its Jacobians are, with S = ``sqrt_info``."""
+        S = "S\\, " if self.noise else ""
+        slopes = [rf"\frac{{\partial {residual}}}{{\partial {v}}}" for v in variables]
+        made = [rf"\mathrm{{res}}_{{{v}}}" for v in variables]
+        if not self.loss:
+            rows = [rf"\mathrm{{res}} &= {S}{residual}"]
+            return (*rows, *(f"{name} &= {S}{slope}" for name, slope in zip(made, slopes, strict=True)))
+        value, weight, where = self.mode.latex
+        return (
+            rf"u &= {S}{residual},\; s = \left\lVert u \right\rVert^{{2}},\; {where}",
+            rf"\mathrm{{res}} &= {value}",
+            *(f"{name} &= {weight} {S}{slope}" for name, slope in zip(made, slopes, strict=True)),
         )
 
     def draw(self, generator: np.random.Generator, m: int) -> dict[str, NDArray[np.float64]]:
