@@ -53,7 +53,7 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
         value=value,
         jacobians=best,
         passes=passes,
-        frames=graph.frames.lines if graph.frames.typed else (),
+        frames=graph.frames.lines if graph.frames.typed or "res" in dict(graph.outputs) else (),
         in_place=in_place,
         noise=noise_lines(graph, weighting),
     )

@@ -73,7 +73,7 @@ class Kernel:
     value: Program
     jacobians: Program
     passes: tuple[PassCount, ...]
-    frames: tuple[str, ...] = ()  # lines such as "T_WB: pose of B in W", where names declare frames
+    frames: tuple[str, ...] = ()  # lines such as "res: tangent vector in B; noise in B"
     in_place: bool = False
     noise: tuple[str, ...] = ()  # how residual and Jacobians are whitened and weighed by a loss
 

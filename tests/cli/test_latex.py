@@ -16,7 +16,6 @@ from liegen import (
     SE3,
     SO3,
     Cal3_S2,
-    Product,
     R,
     cross,
     dot,

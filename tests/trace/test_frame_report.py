@@ -13,6 +13,7 @@ from liegen import (
     SO3,
     factor,
     function,
+    library,
     outputs,
     stack,
 )
@@ -61,7 +62,7 @@ def test_untyped_names_are_described():
     assert report.columns == {
         "x": "the body frame of x", "y": "the body frame of y", "p": "the frame of p"
     }  # fmt: skip
-    assert untyped.kernel.frames == ()
+    assert untyped.kernel.frames == report.lines
 
 
 def test_stacked_residuals_have_a_frame_for_each_part():
@@ -104,19 +105,40 @@ def test_bound_arguments_are_constants():
     assert fixed.frames.columns == {"T_WB": "B"}
 
 
-def test_headers_state_frames_of_typed_factors_only():
-    def header(f):
-        return kernel_header(f.kernel, Options(package="p", regenerate="liegen generate"))
+def header(f):
+    return kernel_header(f.kernel, Options(package="p", regenerate="liegen generate"))
 
-    typed = header(between)
-    start = typed.index("Frames:")
-    assert typed[start + 1 : start + 1 + len(between.frames.lines)] == tuple(
-        f"  {line}" for line in between.frames.lines
-    )
-    from liegen.library import between_se3
 
-    assert "Frames:" not in header(between_se3)
-    assert between_se3.frames.noise == "the body frame of z"
+@pytest.mark.parametrize("f", [between, library.between_se3, library.range_se3_r3], ids=lambda f: f.name)
+def test_headers_state_the_frames_of_factors(f):
+    lines = header(f)
+    start = lines.index("Frames:")
+    assert f.frames.lines
+    assert lines[start + 1 : start + 1 + len(f.frames.lines)] == tuple(f"  {line}" for line in f.frames.lines)
+
+
+def test_headers_of_functions_state_declared_frames_only():
+    @function
+    def moved(x: SE3, p: R3):
+        return x @ p
+
+    @function
+    def seen(T_AB: SE3, p_B: R3):
+        return T_AB @ p_B
+
+    @factor(frames=False)
+    def off(x: SE3, y: SE3):
+        return x.local(y)
+
+    assert "Frames:" not in header(moved)
+    assert "Frames:" not in header(off)
+    assert "  out: point in A; noise in A" in header(seen)
+
+
+def test_another_chart_is_named_where_its_columns_are_elsewhere():
+    lines = library.between_se3.in_chart("ceres").frames.lines
+    assert "chart ceres: columns of x in its axes and order, see Conventions" in lines
+    assert "chart ceres: local (rows, noise) in its axes and order, see Conventions" in lines
 
 
 # the documentation

@@ -100,7 +100,7 @@ def _frames(report: FrameReport, parameters: tuple[Parameter, ...], common: Pres
     """Frames are those of right perturbations: a line says where a chart has other ones."""
     charts = {p.name: p.chart for p in parameters if p.variable and form_chart(p.manifold.form, p.chart)}
     turned = {name: c.name for name, c in charts.items()}
-    if not report.typed or (not turned and common is GTSAM):
+    if not report.lines or (not turned and common is GTSAM):
         return report
     notes = [f"chart {chart}: columns of {name} in its axes and order, see Conventions"
              for name, chart in turned.items()]  # fmt: skip

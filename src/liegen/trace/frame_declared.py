@@ -25,7 +25,8 @@ _FREE = frozenset(
 #: Vectors of these dimensions live in a frame: those of plane and space, and twists of groups in MAPS.
 _SPATIAL = (2, 3, 6, 9, 10)
 #: Classes whose elements have two frames, with how a report describes them. They compose, invert and move
-#: vectors as poses do; an operation of their own, if they have any, needs a rule in frame_rules.
+#: vectors as poses do; an operation of their own, if they have any, needs a rule in frame_rules. The first
+#: entry that fits counts.
 MAPS: Mapping[type[Manifold], str] = {
     Calibration: "calibration, from {1} to {0}",
     Rotation: "rotation from {1} to {0}",
