@@ -1,10 +1,12 @@
 """Frames of the parts of products: named in the class, renamed by arguments, checked part by part."""
 
+from pathlib import Path
 from typing import Annotated
 
 import pytest
 
 from liegen import (
+    R1,
     R2,
     R3,
     R6,
@@ -116,6 +118,18 @@ def test_an_argument_renames_by_the_first_letters():
         @factor
         def mistaken(x_B1: State, y_B2: State, *, T_B2B1: SE3):
             return T_B2B1.local(x_B1.T_WB.between(y_B2.T_WB))
+
+
+def test_the_longest_frame_is_renamed_and_none_twice():
+    @factor
+    def f(x_C2: Robot, y_C21: Robot, z_B1B2: Robot):
+        poses = [a.T_WB @ a.right_C2.T_BC for a in (x_C2, y_C21, z_B1B2)]
+        return stack(poses[0].between(poses[1]).log(), poses[2].log())
+
+    known = f.frames.arguments
+    assert known["x_C2.right_C2.T_BC"] == ("B of x_C2", "C2 of x_C2")
+    assert known["y_C21.right_C2.T_BC"] == ("B of y_C21", "C21")
+    assert known["z_B1B2.T_WB"] == ("W", "B of z_B1B2")
 
 
 def test_a_name_that_fits_no_frame_of_the_class_says_nothing():
@@ -297,3 +311,24 @@ def test_group_operations_part_by_part():
         @factor
         def biases(x_B1: State, y_B2: State):
             return x_B1.local(y_B2)
+
+
+DOCUMENT = (Path(__file__).resolve().parents[2] / "docs" / "frames.md").read_text(encoding="utf-8")
+
+
+def test_the_class_of_the_document():
+    space = {"Product": Product, "Annotated": Annotated, "frames": frames, "SE3": SE3, "R3": R3, "R1": R1}
+    exec(DOCUMENT.partition("```py\n")[2].partition("```")[0], space)
+    written = space["State"]
+    assert class_frames(written) == ("W", "B", "L")
+    assert placed_frames(written) == ("B", "L")
+    stated = Annotated[written, frames("V", "B1", "L")]
+    for annotation, name, found in (
+        (written, "x", ("B", "L")), (written, "x_B1", ("B1", "L")), (stated, "x", ("B1", "L"))
+    ):  # fmt: skip
+        body = f"def f({name}: kind):\n    return {name}.lidar.log()"
+        exec(body, space | {"kind": annotation}, space)
+        assert factor(space["f"]).frames.arguments[f"{name}.lidar"] == found
+    exec("def f(x: kind):\n    return x.T_WB @ x.v_W", space | {"kind": written}, space)
+    with pytest.raises(DefinitionError, match=r"of x\.T_WB is B, the frame of x\.v_W is W"):
+        factor(space["f"])

@@ -124,9 +124,9 @@ def _kind(stem: str, manifold: type[Manifold], *, point: bool | None) -> Kind:
 def _of_product(name: str, cls: type[Product], annotated: Frames | None, what: str) -> Declared | None:
     """The frames that the class names, renamed by the argument.
 
-    A token of the argument's name renames the frame of the class that it begins with: ``x_B1`` makes B of
-    ``T_WB`` B1. A name that does not fit so says nothing. ``Annotated`` gives all of them in order. Where
-    the class names none, two frames are those of its poses and rotations.
+    A token of the argument's name renames the (longest) frame of the class that it begins with: ``x_B1``
+    makes B of ``T_WB`` B1. A name that does not fit so says nothing. ``Annotated`` gives all of them in
+    order. Where the class names none, two frames are those of its poses and rotations.
     """
     for part, kind, note in _notes(cls):  # mistakes of the class, found where it is used
         declared(part, kind, note, f"{what}: part {part!r}")
@@ -139,9 +139,9 @@ def _of_product(name: str, cls: type[Product], annotated: Frames | None, what: s
     _, tokens = read_name(name)
     if not own:
         return Declared(tokens, Kind.OPEN) if len(tokens) == 2 else None
-    meant = [[frame for frame in own if token.startswith(frame)] for token in tokens]
-    renamed = {frames[0]: token for token, frames in zip(tokens, meant, strict=True) if len(frames) == 1}
-    fits = len(renamed) == len(tokens)
+    meant = [max((f for f in own if token.startswith(f)), key=len, default="") for token in tokens]
+    fits = "" not in meant and len(set(meant)) == len(meant)
+    renamed = dict(zip(meant, tokens, strict=True))
     return Declared(tuple(renamed.get(frame, frame) if fits else frame for frame in own), Kind.OPEN)
 
 
