@@ -1,33 +1,33 @@
-"""GTSAM's factors as functions that `liegen check-jacobian` can hold against formulas (pip install gtsam)."""
-
-from typing import Any
+"""Factors of GTSAM for `liegen check-jacobian` (pip install gtsam), as any program of yours makes them."""
 
 import gtsam
 import numpy as np
 
+z = gtsam.Pose3(gtsam.Rot3.RzRyRx(0.5, -0.2, 0.3), np.array([1.0, 2.0, 3.0]))
+noise = gtsam.noiseModel.Gaussian.Covariance(np.diag([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]) + 0.02)
 
-def between(x, y, z):
-    """BetweenFactorPose3; compare with between_se3."""
-    noise = gtsam.noiseModel.Unit.Create(6)
-    return evaluated(gtsam.BetweenFactorPose3(0, 1, pose(z), noise), pose(x), pose(y))
+between = gtsam.BetweenFactorPose3(0, 1, z, noise)
+prior = gtsam.PriorFactorPose3(0, z, noise)
+bearing = gtsam.BearingFactor3D(
+    0, 1, gtsam.Unit3(np.array([1.0, 2.0, 3.0])), gtsam.noiseModel.Isotropic.Sigma(2, 0.1)
+)
+camera = gtsam.GenericProjectionFactorCal3_S2(
+    np.array([300.0, 200.0]),
+    gtsam.noiseModel.Isotropic.Sigma(2, 1.5),
+    0,
+    1,
+    gtsam.Cal3_S2(500.0, 510.0, 0.1, 320.0, 240.0),
+)
 
 
-def bearing(x, y, z):
-    """BearingFactor3D; compare with bearing_se3_r3_gtsam."""
-    noise = gtsam.noiseModel.Unit.Create(2)
-    return evaluated(gtsam.BearingFactor3D(0, 1, gtsam.Unit3(z), noise), pose(x), y)
+def error(factor, values, H):
+    """A between factor with the approximation that GTSAM 4.2 makes: Jr^-1 left out."""
+    first, second = factor.keys()
+    x, y = values.atPose3(first), values.atPose3(second)
+    if H is not None:
+        H[0] = -x.between(y).inverse().AdjointMap()
+        H[1] = np.eye(6)
+    return gtsam.Pose3.Logmap(z.between(x.between(y)))
 
 
-def pose(x):
-    """A Pose3 from the stored quaternion (x, y, z, w) and translation."""
-    return gtsam.Pose3(gtsam.Rot3.Quaternion(x[3], x[0], x[1], x[2]), x[4:])
-
-
-def evaluated(factor: Any, *variables: Any):
-    """The residual and the Jacobians, of a factor with unit noise on the keys 0, 1, ..."""
-    values = gtsam.Values()
-    for key, value in enumerate(variables):
-        values.insert(key, value)
-    A, b = factor.linearize(values).jacobian()
-    dims = [6 if isinstance(v, gtsam.Pose3) else len(v) for v in variables]
-    return -b, *np.split(A, np.cumsum(dims)[:-1], axis=1)
+approximate = gtsam.CustomFactor(noise, [0, 1], error)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from liegen.algebra import Scalar
-from liegen.algebra.linear import Chain, Matrix, is_structural
+from liegen.algebra.linear import Matrix, Numbers, is_structural
 from liegen.differentiate import STRATEGIES, Expressions, Linearised
 from liegen.program import Port
 from liegen.program.lower import lower
@@ -127,7 +127,7 @@ def ranked(graph: Graph, values: Expressions, local: Linearised) -> list[tuple[i
 
 def _begun(
     graph: Graph, values: Expressions, local: Linearised
-) -> tuple[Ledger, Mapping[tuple[int, int], Chain]]:
+) -> tuple[Ledger, Mapping[tuple[int, int], Numbers]]:
     """The outputs and all entries of local blocks as nodes; the blocks on these."""
     outputs = [x for _, node in graph.outputs for x in values.scalars[id(node)]]
     outputs += [values.scalars[id(d.condition)][0] for d in graph.domain]

@@ -24,7 +24,6 @@ from liegen.trace import (
     Signature,
     in_layouts,
     inlined,
-    latex,
     trace,
 )
 
@@ -121,7 +120,9 @@ class Function(Generic[P, T]):
 
     def _repr_latex_(self) -> str:
         """The formula and its Jacobians, as notebooks show them."""
-        return f"$$\n{latex(self.graph)}\n$$"
+        from liegen.derive import function_latex
+
+        return f"$$\n{function_latex(self.plain, self.weighting)}\n$$"
 
     def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
         free = self._free

@@ -21,7 +21,7 @@ from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program
 from liegen.program.lower import lower
 from liegen.program.passes import optimise
-from liegen.trace import Graph, Parameter, formula, jacobian_formulas
+from liegen.trace import Graph, Parameter, aligned, formula, jacobian_formulas, latex, latex_name, latex_rows
 
 #: Orders whose counts are that close to the best one's are carried out.
 CLOSE = 1.005
@@ -57,7 +57,7 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
         value=value,
         jacobians=best,
         passes=passes,
-        frames=graph.frames.lines if graph.frames.typed else (),
+        frames=graph.frames.lines if graph.frames.typed or "res" in dict(graph.outputs) else (),
         in_place=in_place,
         noise=noise_lines(graph, weighting),
     )
@@ -101,9 +101,18 @@ def noise_lines(graph: Graph, weighting: Weighting | None) -> tuple[str, ...]:
     """Noise, loss, mode, frame and formulas of a weighting."""
     if not weighting:
         return ()
-    ((name, _),) = unwhitened(graph).outputs
+    ((name, node),) = unwhitened(graph).outputs
     variables = [p.name for p in graph.parameters if p.variable]
-    return weighting.lines(name, variables, graph.frames.noise)
+    return weighting.lines(name, node.manifold.form.dim, variables, graph.frames.noise)
+
+
+def function_latex(graph: Graph, weighting: Weighting | None) -> str:
+    """Residual and Jacobians in LaTeX, before noise and loss, and then what these make of them."""
+    if not weighting:
+        return latex(graph)
+    shown = unwhitened(graph)
+    variables = [latex_name(p.name) for p in graph.parameters if p.variable]
+    return aligned((*latex_rows(shown), *weighting.latex_rows(latex_name(shown.outputs[0][0]), variables)))
 
 
 def lowered(
@@ -132,17 +141,17 @@ def lowered(
 
 def _argument(p: Parameter) -> Argument:
     form, stored = p.manifold.form, p.storage
-    return Argument(p.name, form.name, stored.names, form.dim, p.variable, stored.shape)
+    return Argument(p.name, form.name, stored.names, form.dim, p.variable, shape=stored.shape)
 
 
 def _weight(weight: Weight) -> Argument:
     storage = tuple("_".join(map(str, place)) for place in np.ndindex(weight.shape))
-    return Argument(weight.name, "numbers", storage, 0, False, weight.shape, weight.meaning)
+    return Argument(weight.name, "numbers", storage, 0, False, weight.meaning, shape=weight.shape)
 
 
 def _output(name: str, form: ManifoldForm, graph: Graph) -> Output:
     stored = storage(form, graph.layout)
-    return Output(name, form.name, stored.names, form.dim, stored.shape)
+    return Output(name, form.name, stored.names, form.dim, shape=stored.shape)
 
 
 def _with_parts(form: ManifoldForm) -> tuple[ManifoldForm, ...]:

@@ -6,11 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from liegen.charts import form_chart
 from liegen.define import Function
+from liegen.derive import function_latex, noise_lines, weights_of
 from liegen.kernel import Kernel
 from liegen.manifolds import Leaf
 from liegen.program.kinds import kinds as grouped
-from liegen.trace import Graph, jacobian_formulas, latex
+from liegen.trace import Graph, jacobian_formulas
 from liegen.trace.jacobian_text import legend
 
 AnyFunction = Function[..., Any]
@@ -53,10 +55,11 @@ def summary(function: AnyFunction) -> Summary:
     """Name, arguments, outputs and the first line of the docstring; nothing is derived."""
     graph = function.graph
     lines = graph.doc.strip().splitlines()
+    kinds = {w.name: w.kind for w in weights_of(function.plain, function.weighting)}
     return Summary(
         name=graph.name,
         variables={p.name: p.manifold.form.name for p in graph.parameters if p.variable},
-        given={p.name: p.manifold.form.name for p in graph.parameters if not p.variable},
+        given={p.name: kinds.get(p.name, p.manifold.form.name) for p in graph.parameters if not p.variable},
         outputs={n: (node.manifold.form.name, node.manifold.form.dim) for n, node in graph.outputs},
         meaning=lines[0] if lines else "",
     )
@@ -80,9 +83,11 @@ def explanation(function: AnyFunction) -> str:
 
 def latex_explanation(function: AnyFunction) -> str:
     """The same formulas as an ``aligned`` environment of LaTeX, after comments on what the blocks are."""
-    graph, row = function.graph, summary(function)
-    comments = [f"{row.name}({row.arguments}) -> {row.results}", *legend(jacobian_formulas(graph))]
-    return "".join(f"% {line}\n" for line in comments) + latex(graph) + "\n"
+    row, shown = summary(function), function.plain
+    weighed = noise_lines(shown, function.weighting)
+    comments = [f"{row.name}({row.arguments}) -> {row.results}", *legend(jacobian_formulas(shown)), *weighed]
+    text = function_latex(shown, function.weighting)
+    return "".join(f"% {line}\n" for line in comments) + text + "\n"
 
 
 _KIND_NOTES = (
@@ -137,8 +142,15 @@ def _notes(graph: Graph) -> list[str]:
     z, x, y = (n.operation.show for n in (measured, *predicted.operands))
     known = {name: names[-1] for name, names in graph.frames.arguments.items()}
     own = {name: f"frame {known[name]}" if name in known else "its own frame" for name in (x, y)}
+    frame, cov, why = f"noise of covariance S in the frame of {z}:", "S", f"exact, since {y} = {x} {z} Exp(n)"
+    if form_chart(measured.manifold.form, graph.chart) is not None:
+        cov, why = "S'", "of first order"
+        frame = (
+            f"noise of covariance S in the chart {graph.chart.name} at {z}, "
+            f"S' = M({z}) S M({z})^T (uncertainty.from_chart):"
+        )
     return [
-        f"noise of covariance S in the frame of {z}: with {x} fixed, {y} has covariance S in {own[y]};",
-        f"with {y} fixed, {x} has covariance Ad({z}) S Ad({z})^T in {own[x]}",
-        f"(exact, since {y} = {x} {z} Exp(n))",
+        f"{frame} with {x} fixed, {y} has covariance {cov} in {own[y]};",
+        f"with {y} fixed, {x} has covariance Ad({z}) {cov} Ad({z})^T in {own[x]}",
+        f"({why})",
     ]

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from liegen.errors import Site
 from liegen.program import Program
 
 
 @dataclass(frozen=True)
-class Argument:
-    """A parameter: ``storage`` names its scalars (``qx`` to ``z`` for SE3), ``dim`` is its tangent's size.
+class Stored:
+    """A named value on a manifold: ``storage`` names its scalars (``qx`` to ``z`` for SE3).
 
-    ``shape`` is that of its array: (size,), or (rows, columns) for a matrix, whose storage is row-major.
-    ``meaning`` describes it where no manifold does.
+    ``dim`` is its tangent's size. ``shape`` is that of its array: (size,), or (rows, columns) for a matrix,
+    whose storage is row-major.
     """
 
     name: str
     manifold: str
     storage: tuple[str, ...]
     dim: int
-    variable: bool
-    shape: tuple[int, ...] = ()
-    meaning: str = ""
+    shape: tuple[int, ...] = field(default=(), kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "shape", self.shape or (len(self.storage),))
@@ -34,25 +32,16 @@ class Argument:
 
 
 @dataclass(frozen=True)
-class Output:
-    """A named result on a manifold; its Jacobians are ``dim`` rows by each variable's ``dim`` columns.
+class Argument(Stored):
+    """A parameter. ``meaning`` describes it where no manifold does."""
 
-    ``shape`` is that of its array: (size,), or (rows, columns) for a matrix.
-    """
+    variable: bool
+    meaning: str = ""
 
-    name: str
-    manifold: str
-    storage: tuple[str, ...]
-    dim: int
-    shape: tuple[int, ...] = ()
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "shape", self.shape or (len(self.storage),))
-
-    @property
-    def size(self) -> int:
-        """Number of stored scalars."""
-        return len(self.storage)
+@dataclass(frozen=True)
+class Output(Stored):
+    """A named result; its Jacobians are ``dim`` rows by each variable's ``dim`` columns."""
 
     @property
     def laid_out(self) -> bool:
@@ -89,7 +78,7 @@ class Kernel:
     value: Program
     jacobians: Program
     passes: tuple[PassCount, ...]
-    frames: tuple[str, ...] = ()  # lines such as "T_WB: pose of B in W", where names declare frames
+    frames: tuple[str, ...] = ()  # lines such as "res: tangent vector in B; noise in B"
     in_place: bool = False
     noise: tuple[str, ...] = ()  # how residual and Jacobians are whitened and weighed by a loss
 

@@ -8,7 +8,23 @@ from click.testing import CliRunner
 from matplotlib.mathtext import MathTextParser
 from test_jacobian_text import CASES_OF_GROUP
 
-from liegen import R1, R3, S2, SE2, SE3, SO3, Cal3_S2, R, cross, dot, factor, library, norm, require, where
+from liegen import (
+    R1,
+    R3,
+    S2,
+    SE2,
+    SE3,
+    SO3,
+    Cal3_S2,
+    R,
+    cross,
+    dot,
+    factor,
+    library,
+    norm,
+    require,
+    where,
+)
 from liegen.cli import app
 from liegen.sources import load
 from liegen.trace import latex_rows

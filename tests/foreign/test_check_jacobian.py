@@ -311,13 +311,12 @@ def test_c_functions(tmp_path):
     (tmp_path / "mine.c").write_text(C_RANGE)
     shared = tmp_path / "mine.so"
     compile_shared([tmp_path / "mine.c"], shared, ["-O1"])
-    kernel = library.range_r3.kernel
-    assert compare(library.range_r3, foreign(f"{shared}:good", kernel)).passed
-    _, by_x, by_y = compare(library.range_r3, foreign(f"{shared}:bad", kernel)).findings
+    assert compare(library.range_r3, foreign(f"{shared}:good", library.range_r3)).passed
+    _, by_x, by_y = compare(library.range_r3, foreign(f"{shared}:bad", library.range_r3)).findings
     assert by_x.correct
     assert (by_y.correct, by_y.entry, by_y.differences) == (False, (0, 2), ())
     with pytest.raises(SourceError, match="has no function 'ugly'"):
-        foreign(f"{shared}:ugly", kernel)
+        foreign(f"{shared}:ugly", library.range_r3)
     assert Path(shared).is_file()
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from loss_reference import RHO, SLOPE
@@ -85,3 +87,22 @@ def test_barron_contains_the_others(alpha, other):
         assert float(mine) == pytest.approx(
             float(LOSSES[other].rho(np.float64(x), np.float64(np.sqrt(b)))), rel=1e-14
         )
+
+
+@pytest.mark.parametrize("name", LOSSES)
+def test_what_is_said_of_the_scale_is_so(name):
+    """The weight where |S r| is the scale, as the meaning of the parameter states it."""
+    loss, k = LOSSES[name], np.float64(1.7)
+    shape = [np.float64(x) for x in loss.shapes[-1]]
+    said = loss.meaning(loss.scale).partition("rho' is ")[2].partition(",")[0]
+    if name == "huber":
+        ends = [loss.rho(np.float64(r * r), k) for r in (k, 2 * k, 3 * k)]
+        assert np.diff(ends)[0] == pytest.approx(np.diff(ends)[1])
+        assert said == ""
+    elif name == "tukey":
+        assert loss.slope(k * k * (1 + 1e-9), k) == float(said) == 0
+    else:
+        space = {"sqrt": math.sqrt, "e": math.e, "alpha": shape[0] if shape else 0, "b": 1.0}
+        space["b"] = abs(space["alpha"] - 2)
+        weight = eval(said.replace("^", "**"), space)
+        assert loss.slope(k * k, *shape, k) == pytest.approx(weight, rel=1e-14)

@@ -106,6 +106,10 @@ def test_samples_repeat_with_their_seed():
     a, b = (np.asarray(uncertainty.sample(z, S, np.random.default_rng(5), 4)) for _ in range(2))
     assert np.array_equal(a, b)
     assert len(np.unique(a[:, 0])) == 4
+    with pytest.raises(
+        UncertaintyError, match=r"rng must be a generator, np.random.default_rng\(seed\), got a int"
+    ):
+        uncertainty.sample(z, S, 5)
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 6, 9])

@@ -28,6 +28,8 @@ class Factor(Protocol):
 
 #: A matrix as a product of sparse factors, leftmost first; whoever multiplies chooses the order.
 Chain = tuple[Matrix | Factor, ...]
+#: The same in numbers, see :func:`plain`.
+Numbers = tuple[Matrix, ...]
 
 
 def is_structural(a: Scalar) -> bool:
@@ -194,7 +196,7 @@ def multiply_cost(a: Matrix, b: Matrix) -> int:
     return sum([m * n for m, n in zip(in_columns, in_rows, strict=True)])
 
 
-def plain(chain: Chain) -> tuple[Matrix, ...]:
+def plain(chain: Chain) -> Numbers:
     """The chain in numbers; a factor -I becomes the sign of the next one."""
     flat: list[Matrix] = []
     for factor in chain:

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 import click
 
-from .shared import chosen, count, source_argument, table
+from .shared import Convention, chosen, convention_options, count, source_argument, table
+
+if TYPE_CHECKING:
+    from liegen.sources import AnyFunction
 
 
 @click.command("check-jacobian")
@@ -14,9 +18,14 @@ from .shared import chosen, count, source_argument, table
 @source_argument
 @click.option(
     "--against", "place", required=True, metavar="PLACE:FUNCTION",
-    help="FILE.py:FUNCTION or MODULE:FUNCTION with f(x, y, ...) -> (res, J_x, J_y, ...), or"
-    " LIBRARY.so:FUNCTION with the signature of the generated C.",
+    help="FILE.py:FUNCTION or MODULE:FUNCTION with f(x, y, ...) -> (res, J_x, J_y, ...); the same with a"
+    " factor of GTSAM, or gtsam:CLASS; LIBRARY.so:FUNCTION with the signature of the generated C.",
 )  # fmt: skip
+@click.option(
+    "--given", multiple=True, metavar="ARGUMENT=NAME",
+    help="Where a factor of GTSAM does not tell an argument of NAME: the object in the same file.",
+)  # fmt: skip
+@convention_options
 @click.option("--samples", type=click.IntRange(min=1), default=24, show_default=True, help="Random samples.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
 @click.option(
@@ -25,19 +34,30 @@ from .shared import chosen, count, source_argument, table
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def check_jacobian(
-    name: str, source: str | None, place: str, samples: int, seed: int, tolerance: float, as_json: bool
+    name: str,
+    source: str | None,
+    place: str,
+    given: tuple[str, ...],
+    chart: str | None,
+    layout: str | None,
+    normalise: bool,
+    samples: int,
+    seed: int,
+    tolerance: float,
+    as_json: bool,
 ) -> None:
     """Compare the residual and Jacobians of a function of yours with the factor NAME of SOURCE.
 
-    The function gets the stored arguments in the factor's order. Where it differs, a known convention is
-    named if one explains it: order of the tangent, side, sign, missing Jr^-1, half angles.
+    The function gets the stored arguments in the factor's order; a factor of GTSAM has the variables as its
+    keys, in order, and is compared without its noise. Where something differs, a known convention is named
+    if one explains it: order of the tangent, side, sign, missing Jr^-1, half angles.
     """
     from liegen.foreign import compare, foreign
 
-    (function,) = chosen(source, [name])
-    result = compare(
-        function, foreign(place, function.kernel), samples=samples, seed=seed, tolerance=tolerance
-    )
+    (function,) = chosen(source, [name], (), Convention(chart, layout, normalise))
+    named = dict(_pair(text, function) for text in given)
+    found = foreign(place, function, named)
+    result = compare(function, found, samples=samples, seed=seed, tolerance=tolerance)
     if as_json:
         click.echo(json.dumps(result.as_json(), indent=2))
     else:
@@ -55,3 +75,14 @@ def check_jacobian(
         click.echo(f"\n{count(result.samples, 'sample')}, tolerance {tolerance:g}")
     if not result.passed:
         raise click.exceptions.Exit(1)
+
+
+def _pair(text: str, function: AnyFunction) -> tuple[str, str]:
+    argument, _, name = text.partition("=")
+    known = [p.name for p in function.graph.parameters if not p.variable]
+    if argument not in known or not name:
+        raise click.UsageError(
+            f"--given {text}: write ARGUMENT=NAME, with one of {function.name}'s given arguments: "
+            f"{', '.join(known)}"
+        )
+    return argument, name

@@ -1,4 +1,4 @@
-"""Ways through a graph without a branch become one edge, where something cancels in the chain that they make."""
+"""Ways through a graph without a branch become one edge, where something cancels in their chain."""
 
 from __future__ import annotations
 

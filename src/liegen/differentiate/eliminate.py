@@ -12,11 +12,19 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
-from liegen.algebra.linear import Chain, Matrix, matadd, product, product_from_left, product_from_right
+from liegen.algebra.linear import (
+    Chain,
+    Matrix,
+    Numbers,
+    matadd,
+    product,
+    product_from_left,
+    product_from_right,
+)
 
 #: (from, to) -> the derivative of ``to`` by ``from``, as a product of factors.
-Edges = Mapping[tuple[int, int], Chain]
-Ends = dict[int, Chain]
+Edges = Mapping[tuple[int, int], Numbers]
+Ends = dict[int, Numbers]
 #: From the inner vertices, in the graph's order, that in which they are eliminated, decided as it goes.
 Order = Callable[["Elimination", Sequence[int]], Iterable[int]]
 
@@ -26,7 +34,7 @@ class Strategy:
     """In which order inner vertices are eliminated, and how chains are multiplied."""
 
     order: Order
-    multiply: Callable[[Chain], Matrix]
+    multiply: Callable[[Numbers], Matrix]
     unshared: bool = False  # whether a chain that several products use is multiplied out in each of them
 
 
@@ -84,7 +92,7 @@ class Elimination:
         for (a, b), chain in edges.items():
             self.add(a, b, chain)
 
-    def add(self, a: int, b: int, chain: Chain) -> None:
+    def add(self, a: int, b: int, chain: Numbers) -> None:
         """Add a path from a to b: parallel edges are summed."""
         present = self.out.get(a, {}).get(b)
         if present is not None:
@@ -115,17 +123,17 @@ class Elimination:
             for a, inner in right.items():
                 self.add(a, b, (*outer, *inner))
 
-    def shared(self, chain: Chain, users: int) -> Chain:
+    def shared(self, chain: Numbers, users: int) -> Numbers:
         """Multiply out what several products will use."""
         apart = users < 2 or self.strategy.unshared
         return chain if apart else (self.strategy.multiply(chain),)
 
 
-def _rows(chain: Chain) -> int:
+def _rows(chain: Numbers) -> int:
     return len(chain[0])
 
 
-def _columns(chain: Chain) -> int:
+def _columns(chain: Numbers) -> int:
     return len(chain[-1][0])
 
 

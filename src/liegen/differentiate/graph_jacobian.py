@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from liegen.algebra.casadi_backend import ca
-from liegen.algebra.linear import Chain, Matrix, eye, plain, stacked, transpose, zeros
+from liegen.algebra.linear import Chain, Matrix, Numbers, eye, plain, stacked, transpose, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
@@ -52,7 +52,7 @@ class Linearised:
     (output, variable) the edges that are its Jacobian, one below the other, and their shapes.
     """
 
-    edges: Mapping[tuple[int, int], tuple[Matrix, ...]]
+    edges: Mapping[tuple[int, int], Numbers]
     inner: tuple[int, ...]
     wanted: Mapping[tuple[str, str], tuple[tuple[tuple[int, int], tuple[int, int]], ...]]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from inspect import cleandoc
 from textwrap import wrap
 
-from liegen.kernel import Argument, Kernel, Output
+from liegen.kernel import Argument, Kernel, Output, Stored
 
 from .target import Options
 
@@ -18,7 +18,7 @@ LICENCE = (
 )
 
 
-def storage_text(item: Argument | Output) -> str:
+def storage_text(item: Stored) -> str:
     """``SE3 (qx, qy, qz, qw, x, y, z)``; the manifold alone where it stores one number, or is of matrices."""
     if isinstance(item, Output) and len(item.shape) > 1:
         return item.manifold

@@ -1,4 +1,5 @@
-"""Functions to check: Python's ``module:function`` and ``file.py:function``, C's ``library.so:function``.
+"""What is checked: Python's ``module:function`` and ``file.py:function``, C's ``library.so:function``, and
+factors of GTSAM, ``file.py:factor`` or ``gtsam:BetweenFactorPose3``.
 
 A Python function takes the stored arguments as arrays in the formula's order, variables and given ones, and
 returns the residual and a Jacobian for each variable. A C function has the signature of the generated ones::
@@ -12,46 +13,94 @@ import ctypes
 import importlib
 import importlib.util
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.define import Function
 from liegen.errors import SourceError, ToolError
 from liegen.kernel import Kernel
+from liegen.manifolds import Value
+from liegen.trace import Graph
+
+from .gtsam_factors import evaluated, given_by, is_factor, made
 
 Array = NDArray[np.float64]
 #: From the stored arguments to the residual and a Jacobian for each variable.
-Foreign = Callable[[Sequence[Array]], tuple[Array, ...]]
+Call = Callable[[Sequence[Array]], tuple[Array, ...]]
+
+
+@dataclass(frozen=True)
+class Foreign:
+    """What is checked, and the arguments that it fixes: a factor object has its measurement."""
+
+    call: Call
+    given: Mapping[str, Value] = field(default_factory=dict[str, Value])
+
+
 _SHARED = (".so", ".dylib", ".dll")
 
 
-def foreign(place: str, kernel: Kernel) -> Foreign:
-    """The function at ``place``, checked for the shapes that the formula's kernel has.
+def foreign(place: str, function: Function[..., Any], given: Mapping[str, str] | None = None) -> Foreign:
+    """What is at ``place``, checked for the shapes that the formula has.
 
-    Raises SourceError for a place that cannot be read or has no such function.
+    ``given`` names, for a factor of GTSAM, the objects beside it that are what the formula is given and the
+    factor does not tell. Raises SourceError for a place that cannot be read or has no such function, and for
+    a factor that lacks what the formula is given.
     """
+    kernel = function.kernel
     source, _, name = place.rpartition(":")
     if not source or not name.isidentifier():
         raise SourceError(f"{place!r} is not FILE.py:FUNCTION, MODULE:FUNCTION or LIBRARY.so:FUNCTION")
     if source.endswith(_SHARED):
-        return _c_function(Path(source), name, kernel)
-    found = getattr(_module(source), name, None)
+        return Foreign(_c_function(Path(source), name, kernel))
+    module = _module(source)
+    found: Any = getattr(module, name, None)
+    if is_factor(found):
+        stated = {argument: _object(module, other, source) for argument, other in (given or {}).items()}
+        return _gtsam_factor(found, function.graph, kernel, place, stated)
     if not callable(found):
         raise SourceError(f"{source} has no function {name!r}")
     return of_callable(found, kernel, place)
 
 
+def _object(module: Any, name: str, source: str) -> Any:
+    if not hasattr(module, name):
+        raise SourceError(f"{source} has no {name!r}")
+    return getattr(module, name)
+
+
+def _gtsam_factor(found: Any, graph: Graph, kernel: Kernel, place: str, stated: Mapping[str, Any]) -> Foreign:
+    variables = [p for p in graph.parameters if p.variable]
+    names = [p.name for p in graph.parameters]
+
+    def of_object(*arguments: Array) -> tuple[Array, ...]:
+        values = dict(zip(names, arguments, strict=True))
+        factor = made(found, graph, values) if isinstance(found, type) else found
+        return evaluated(factor, variables, [values[p.name] for p in variables])
+
+    call = _checked(of_object, kernel, place)
+    return Foreign(call) if isinstance(found, type) else Foreign(call, given_by(found, graph, place, stated))
+
+
 def of_callable(function: Callable[..., Any], kernel: Kernel, place: str) -> Foreign:
     """A Python function; its results are checked at each call, which raises ToolError for a wrong shape."""
+    return Foreign(_checked(function, kernel, place))
+
+
+def _checked(function: Callable[..., Any], kernel: Kernel, place: str) -> Call:
     shapes = [(kernel.outputs[0].dim,), *((kernel.outputs[0].dim, v.dim) for v in kernel.variables)]
     names = ["the residual", *(f"the Jacobian by {v.name}" for v in kernel.variables)]
 
     def call(arguments: Sequence[Array]) -> tuple[Array, ...]:
         try:
             results = function(*arguments)
+        except ToolError as error:
+            raise ToolError(f"{place}: {error}") from None
         except Exception as error:
             raise ToolError(f"{place} raised {type(error).__name__}: {error}") from error
         if not isinstance(results, (tuple, list)) or len(results) != len(shapes):  # pyright: ignore[reportUnknownArgumentType]
@@ -68,7 +117,7 @@ def of_callable(function: Callable[..., Any], kernel: Kernel, place: str) -> For
     return call
 
 
-def _c_function(library: Path, name: str, kernel: Kernel) -> Foreign:
+def _c_function(library: Path, name: str, kernel: Kernel) -> Call:
     try:
         function = ctypes.CDLL(str(library.resolve()))[name]
     except OSError as error:

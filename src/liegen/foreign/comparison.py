@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from liegen.define import Function
 from liegen.errors import DefinitionError
+from liegen.manifolds import Value
 from liegen.samples import Case, Draw, default_sampler
 
 from .calls import Foreign
@@ -19,6 +20,8 @@ from .conventions import Choices, Point, explanations, of_jacobian, of_residual
 Array = NDArray[np.float64]
 #: Samples away from special cases, and those where the residual is zero.
 _ANY, _ZERO = Case("random"), Case("zero residual", angle=0.0, offset=0.0)
+#: Gauss-Newton steps to a zero residual, and what counts as zero.
+_STEPS, _SOLVED = 30, 1e-12
 
 
 @dataclass(frozen=True)
@@ -177,17 +180,45 @@ def _sampled(function: Function[..., Any], foreign: Foreign, case: Case, samples
     found: list[tuple[Array, ...]] = []
     for _ in range(samples):
         drawn = sampler(draw, case)
-        values = {name: drawn[name] for name in parameters}
-        given = {name: v for name, v in values.items() if name not in variables}
-        exact = tuple(function.jacobians(*(values[v] for v in variables), **given).values())
+        values: dict[str, Value] | None = {n: foreign.given.get(n, drawn[n]) for n in parameters}
+        if case is _ZERO and foreign.given:  # the sampler's are at zero with its own measurement only
+            values = _solved(function, values, variables)
+        if values is None:
+            continue
+        exact = _evaluated(function, values, variables)
         if not all(np.isfinite(a).all() for a in exact):
             continue
         points.append(Point(values, exact[0]))
         expected.append(exact)
         stored = [p.storage.write(values[p.name].coords) for p in function.graph.parameters]
-        found.append(foreign([np.array(x, dtype=np.float64) for x in stored]))
+        found.append(foreign.call([np.array(x, dtype=np.float64) for x in stored]))
     if not points and case is _ANY:
         raise DefinitionError(
             f"{function.name}: no sample has a finite residual; give it @factor(sample=...)"
         )
     return _Sampled(tuple(points), tuple(expected), tuple(found))
+
+
+def _evaluated(
+    function: Function[..., Any], values: Mapping[str, Value], variables: Sequence[str]
+) -> tuple[Array, ...]:
+    given = {name: v for name, v in values.items() if name not in variables}
+    return tuple(function.jacobians(*(values[v] for v in variables), **given).values())
+
+
+def _solved(
+    function: Function[..., Any], values: Mapping[str, Value], variables: Sequence[str]
+) -> dict[str, Value] | None:
+    """The variables moved to where the residual is zero, by Gauss-Newton steps; None where none is found."""
+    moved: dict[str, Any] = dict(values)
+    for _ in range(_STEPS):
+        residual, *blocks = _evaluated(function, moved, variables)
+        if not all(np.isfinite(a).all() for a in (residual, *blocks)):
+            return None
+        if np.abs(residual).max() < _SOLVED:
+            return moved
+        step = np.linalg.lstsq(np.hstack(blocks), -residual, rcond=None)[0]
+        ends = np.cumsum([block.shape[1] for block in blocks])[:-1]
+        for name, d in zip(variables, np.split(step, ends), strict=True):
+            moved[name] = moved[name].retract(d)
+    return None

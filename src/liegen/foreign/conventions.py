@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from liegen.manifolds import Group, Value, Vector
+from liegen.charts import form_chart
+from liegen.manifolds import Group, Node, Value, Vector
 from liegen.manifolds.form import PoseForm, RotationForm
 from liegen.trace import Graph
 
@@ -67,29 +69,42 @@ def of_jacobian(graph: Graph, variable: str) -> Choices:
 
 def of_residual(graph: Graph) -> Choices:
     """The differences that the residual itself may have: they are those of the rows."""
-    measured = _measured(graph)
+    z = _measured(graph)
     sign = (Difference("the sign of the residual is opposite", lambda J, _: -J),)
-    order = _order(measured.form, "the residual", rows=True) if measured else ()
+    order = _order(z.manifold.form, "the residual", rows=True) if z else ()
     return tuple(kind for kind in (order, sign) if kind)
 
 
-def _measured(graph: Graph) -> Any:
-    """The class of z where the residual is z.local(...)."""
+def _measured(graph: Graph) -> Node | None:
+    """z where the residual is z.local(...)."""
     node = graph.outputs[0][1]
-    return node.operands[0].manifold if node.operation.name == "local" else None
+    return node.operands[0] if node.operation.name == "local" else None
 
 
 def _missing_jr(graph: Graph) -> tuple[Difference, ...]:
-    group = _measured(graph)
-    if group is None or not issubclass(group, Group) or issubclass(group, Vector) or group.form.dim == 1:
+    z = _measured(graph)
+    group: Any = z.manifold if z else None
+    if z is None or not issubclass(group, Group) or issubclass(group, Vector) or group.form.dim == 1:
         return ()
-    jr: Any = group.Jr
-    return (
-        Difference(
-            "Jr^-1(res) is missing (right at zero residual only)",
-            lambda J, p: np.asarray(jr(p.residual)) @ J,
-        ),
-    )
+    chart = form_chart(group.form, graph.chart)
+    if chart is None:
+        return (
+            Difference(
+                "Jr^-1(res) is missing (right at zero residual only)",
+                lambda J, p: np.asarray(group.Jr(p.residual)) @ J,
+            ),
+        )
+
+    blocks: Any = chart.local_blocks()
+
+    def change(J: Array, p: Point) -> Array:
+        at: Any = p.values.get(z.operation.show, group.identity())
+        r, x = tuple(p.residual), tuple(at.coords)
+        chain: Any = blocks(r, x, chart.retract(x, r))[1]
+        block: Array = reduce(np.matmul, [np.array(m, dtype=np.float64) for m in chain])
+        return np.linalg.solve(block, J).astype(np.float64)
+
+    return (Difference("the Jacobian of local at res is missing (right at zero residual only)", change),)
 
 
 def _side(manifold: type[Value], variable: str) -> tuple[Difference, ...]:

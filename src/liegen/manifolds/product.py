@@ -6,7 +6,7 @@ import inspect
 import sys
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Self, dataclass_transform, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, dataclass_transform, get_args, get_origin
 
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.algebra.linear import eye, transpose
@@ -33,13 +33,17 @@ class Product(Group):
     __slots__ = ()
     form: ClassVar[Any]  # pyright: ignore[reportIncompatibleVariableOverride]
     part_classes: ClassVar[Mapping[str, type[Manifold]]] = {}
+    #: What ``Annotated`` says of a part beside its class.
+    part_notes: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
         annotations = _annotations(cls, frame.f_globals, frame.f_locals)
-        own = {name: _part_class(cls, name, kind) for name, kind in annotations.items()}
+        own = {name: _part_class(cls, name, _bare(kind)) for name, kind in annotations.items()}
+        notes = {name: get_args(kind)[1:] for name, kind in annotations.items() if _bare(kind) is not kind}
         cls.part_classes = {**cls.part_classes, **own}
+        cls.part_notes = {**cls.part_notes, **notes}
         if not cls.part_classes:
             raise DefinitionError(
                 f"{here()}: {cls.__name__} has no parts; annotate them, as in class State(Product): pose: SE3"
@@ -126,6 +130,11 @@ def _annotations(cls: type, names: dict[str, Any], local: Any) -> dict[str, Any]
             "import it, or define it before"
         ) from None
     return {name: kind for name, kind in found.items() if get_origin(kind) is not ClassVar}
+
+
+def _bare(kind: Any) -> Any:
+    """The class in ``Annotated[SE3, ...]``."""
+    return get_args(kind)[0] if get_origin(kind) is Annotated else kind
 
 
 def _part_class(cls: type[Product], name: str, kind: Any) -> type[Manifold]:

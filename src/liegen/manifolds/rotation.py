@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Generic, Self, TypeVar, overload
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, NoReturn, Self, TypeVar, overload
+
+from numpy.typing import NDArray
 
 from liegen.algebra.linear import matvec, negated, transpose
 
 from .form import Blocks, Coords, RotationForm
 from .group import Group, tangent_class
-from .node import Operation, apply
+from .node import Operation, apply, refuse
 from .vector import Vector, VectorLike, as_vector
 
 P = TypeVar("P", bound=Vector)
@@ -52,6 +55,15 @@ class Rotation(Group, Generic[P]):
             Operation("unrotate", tangent_class(form.space), value, blocks, "{0}.unrotate({1})"), v
         )
 
+    def matrix(self) -> NDArray[Any]:
+        """R as an array of shape (..., n, n).
+
+        While a factor is traced it is what matrices are for: ``R.matrix() @ v``, ``v @ R.matrix()``, ``.T``,
+        and products of such.
+        """
+        traced: Any = RotationMatrix(self)
+        return traced if self.traced else super().matrix()
+
     def _turn(self, operation: Operation, v: VectorLike) -> Any:
         where = f"{self.form.name}.{operation.name}"
         return apply(operation, operation.result, self, as_vector(v, self.form.space, where))
@@ -64,3 +76,35 @@ class Rotation(Group, Generic[P]):
         is_rotation = isinstance(other, Group) and not isinstance(other, Vector)
         value: Any = other
         return self.compose(value) if is_rotation else self.rotate(value)
+
+
+@dataclass(frozen=True, eq=False)
+class RotationMatrix:
+    """The matrix of a rotation that is being traced: it multiplies, as :class:`Rotation` does."""
+
+    rotation: Rotation[Any]
+    transposed: bool = False
+    __array_ufunc__ = None  # NumPy's arrays leave products to it
+
+    @property
+    def T(self) -> RotationMatrix:
+        """The transpose."""
+        return RotationMatrix(self.rotation, not self.transposed)
+
+    def transpose(self) -> RotationMatrix:
+        """The same as ``T``."""
+        return self.T
+
+    def __matmul__(self, other: RotationMatrix | VectorLike) -> Any:
+        if isinstance(other, RotationMatrix):
+            return RotationMatrix(self._element() @ other._element())
+        return self.rotation.unrotate(other) if self.transposed else self.rotation.rotate(other)
+
+    def __rmatmul__(self, v: VectorLike) -> Any:
+        return self.T @ v
+
+    def _element(self) -> Any:
+        return self.rotation.inverse() if self.transposed else self.rotation
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NoReturn:
+        refuse(self.rotation, "turn the matrix of {} into a NumPy array")

@@ -35,6 +35,8 @@ class Loss:
     root: Normalised
     bend: Normalised
     formula: str
+    #: What happens where |S r| is the scale.
+    there: str
     shape: tuple[str, ...] = ()
     #: Values of the shape parameters that verification takes in turn.
     shapes: tuple[tuple[float, ...], ...] = ((),)
@@ -43,6 +45,15 @@ class Loss:
     def parameters(self) -> tuple[str, ...]:
         """Names of the parameters, the scale last."""
         return (*self.shape, self.scale)
+
+    def meaning(self, parameter: str) -> str:
+        """What a parameter means."""
+        if parameter == self.scale:
+            return f"scale of the loss, a length of the whitened residual: {self.there}"
+        return (
+            "shape of the loss, any real number or -inf: 2 is least squares, 1 pseudo-Huber, 0 Cauchy, "
+            "-2 Geman-McClure, -inf Welsch, up to their scales"
+        )
 
     def normalised(self, s: Scalar, parameters: Sequence[Scalar]) -> tuple[Scalar, Sequence[Scalar]]:
         """x and the shape parameters, of s and the parameters in order."""
@@ -155,7 +166,15 @@ _INF = float("inf")
 LOSSES: Mapping[str, Loss] = {
     loss.name: loss
     for loss in (
-        Loss("huber", "k", _huber, _huber_root, _huber_bend, "s if s <= k^2 else 2 k sqrt(s) - k^2"),
+        Loss(
+            "huber",
+            "k",
+            _huber,
+            _huber_root,
+            _huber_bend,
+            "s if s <= k^2 else 2 k sqrt(s) - k^2",
+            "beyond it the cost grows linearly",
+        ),
         Loss(
             "pseudo-huber",
             "k",
@@ -163,6 +182,7 @@ LOSSES: Mapping[str, Loss] = {
             lambda x: 1.0 / sqrt(sqrt(1.0 + x)),
             lambda x: 1.0 / (1.0 + x),
             "2 k^2 (sqrt(1 + s/k^2) - 1)",
+            "at it the weight rho' is 1/sqrt(2), far beyond the cost grows linearly",
         ),
         Loss(
             "cauchy",
@@ -171,6 +191,7 @@ LOSSES: Mapping[str, Loss] = {
             lambda x: 1.0 / sqrt(1.0 + x),
             lambda x: 2.0 / (1.0 + x),
             "c^2 log(1 + s/c^2)",
+            "at it the weight rho' is 1/2",
         ),
         Loss(
             "tukey",
@@ -179,6 +200,7 @@ LOSSES: Mapping[str, Loss] = {
             _tukey_root,
             _tukey_bend,
             "c^2/3 (1 - (1 - s/c^2)^3) if s < c^2 else c^2/3",
+            "beyond it the weight rho' is 0",
         ),
         Loss(
             "geman-mcclure",
@@ -187,6 +209,7 @@ LOSSES: Mapping[str, Loss] = {
             lambda x: 1.0 / (1.0 + x),
             lambda x: 4.0 / (1.0 + x),
             "c^2 s / (c^2 + s)",
+            "at it the weight rho' is 1/4",
         ),
         Loss(
             "welsch",
@@ -195,6 +218,7 @@ LOSSES: Mapping[str, Loss] = {
             partial(_exp, -0.5),
             lambda x: 2.0 + 0 * x,
             "c^2 (1 - exp(-s/c^2))",
+            "at it the weight rho' is 1/e",
         ),
         Loss(
             "barron",
@@ -203,6 +227,7 @@ LOSSES: Mapping[str, Loss] = {
             _barron_root,
             _barron_bend,
             "2 c^2 b/alpha ((1 + s/(b c^2))^(alpha/2) - 1), b = |alpha - 2|; its limits at 2, 0, -inf",
+            "at it the weight rho' is (1 + 1/b)^(alpha/2 - 1)",
             ("alpha",),
             ((1.0,), (-2.0,), (0.0,), (2.0,), (-_INF,), (1.5,), (2.0 - 1e-9,), (1e-9,), (-30.0,), (3.0,)),
         ),

@@ -19,12 +19,14 @@ class Noise:
     """A model of the noise of a residual with m entries.
 
     ``shape(m)`` is that of ``sqrt_info``; ``matrix(stored, m)`` makes of its numbers, row-major, the upper
-    triangular S with S^T S = covariance^-1, zeros as structure. ``draw`` gives samples for verification.
+    triangular S with S^T S = covariance^-1, zeros as structure. ``kind(m)`` is the shape in words.
+    ``draw`` gives samples for verification.
     """
 
     name: str
     shape: Callable[[int], tuple[int, ...]]
     matrix: Callable[[Vector, int], Matrix]
+    kind: Callable[[int], str]
     meaning: str
     draw: Callable[[np.random.Generator, int], NDArray[np.float64]]
 
@@ -47,21 +49,24 @@ NOISES: Mapping[str, Noise] = {
             "full",
             lambda m: (m, m),
             _upper,
-            "upper triangular S, S^T S = covariance^-1; below the diagonal it is not read",
+            lambda m: f"{m} x {m} upper triangular",
+            "square root S of the information, S^T S = covariance^-1; below the diagonal it is not read",
             _draw_full,
         ),
         Noise(
             "diagonal",
             lambda m: (m,),
             lambda stored, m: diagonal(stored),
-            "1 / standard deviation of each entry of the residual",
+            lambda m: f"R{m} diagonal",
+            "1 / standard deviation of each entry of the residual, the diagonal of S",
             lambda generator, m: generator.uniform(0.5, 2.0, m),
         ),
         Noise(
             "isotropic",
             lambda m: (1,),
             lambda stored, m: diagonal([stored[0]] * m),
-            "1 / standard deviation of every entry of the residual",
+            lambda m: "R1 isotropic",
+            "1 / standard deviation, the same of every entry of the residual; S is that times I",
             lambda generator, m: generator.uniform(0.5, 2.0, 1),
         ),
     )

@@ -38,10 +38,11 @@ _SCALES = (0.5, 5.0)
 
 @dataclass(frozen=True)
 class Weight:
-    """A keyword that a weighting adds: its array's shape and what it means."""
+    """A keyword that a weighting adds: its array's shape, that in words, and what it means."""
 
     name: str
     shape: tuple[int, ...]
+    kind: str
     meaning: str
 
     @property
@@ -63,11 +64,12 @@ class Weighed:
 class Mode:
     """How a loss becomes part of least squares.
 
-    ``formula`` has the residual, the Jacobian, and what they use, as text.
+    ``formula`` has the residual, the Jacobian, and what they use, as text; ``latex`` the same in LaTeX.
     """
 
     name: str
     formula: tuple[str, str, str]
+    latex: tuple[str, str, str]
     weigh: Callable[[Loss, Sequence[Scalar], Vector], Weighed]
 
 
@@ -100,13 +102,23 @@ def _along(u: Vector, ratio: Scalar, J: Matrix) -> Matrix:
 MODES: Mapping[str, Mode] = {
     mode.name: mode
     for mode in (
-        Mode("irls", ("sqrt(w) u", "sqrt(w) {0}", "w = rho'(s)"), _reweighted),
+        Mode(
+            "irls",
+            ("sqrt(w) u", "sqrt(w) {0}", "w = rho'(s)"),
+            (r"\sqrt{w}\, u", r"\sqrt{w}\,", r"w = \rho'(s)"),
+            _reweighted,
+        ),
         Mode(
             "triggs",
             (
-                "sqrt(w) / (1 - alpha) u",
-                "sqrt(w) (I - alpha u u^T / s) {0}",
-                "w = rho'(s), alpha = 1 - sqrt(1 + 2 s rho''(s) / w), at most 1 - 1/64",
+                "sqrt(w) / (1 - alpha_t) u",
+                "sqrt(w) (I - alpha_t u u^T / s) {0}",
+                "w = rho'(s), alpha_t = 1 - sqrt(1 + 2 s rho''(s) / w), at most 1 - 1/64",
+            ),
+            (
+                r"\frac{\sqrt{w}}{1 - \alpha_t}\, u",
+                r"\sqrt{w} \left(I - \frac{\alpha_t}{s} u u^{\top}\right)",
+                r"w = \rho'(s),\; \alpha_t = 1 - \sqrt{1 + 2 s \rho''(s) / w}",
             ),
             _corrected,
         ),
@@ -124,12 +136,10 @@ class Weighting:
 
     def weights(self, m: int) -> tuple[Weight, ...]:
         """The keywords that it adds to a factor with m residuals."""
-        own = (Weight(KEYWORD, self.noise.shape(m), self.noise.meaning),) if self.noise else ()
-        loss = self.loss
-        return own + tuple(
-            Weight(n, (1,), f"{'scale' if loss and n == loss.scale else 'shape'} of the loss")
-            for n in (loss.parameters if loss else ())
-        )
+        noise, loss = self.noise, self.loss
+        own = (Weight(KEYWORD, noise.shape(m), noise.kind(m), noise.meaning),) if noise else ()
+        names = loss.parameters if loss else ()
+        return own + tuple(Weight(n, (1,), "R1", loss.meaning(n)) for n in names if loss)
 
     def parameters(self, given: Mapping[str, Vector]) -> tuple[Scalar, ...]:
         """The loss's parameters in order."""
@@ -158,13 +168,15 @@ class Weighting:
         s = dot(u, u)
         return 0.5 * (self.loss.rho(s, *self.parameters(given)) if self.loss else s)
 
-    def lines(self, residual: str, variables: Sequence[str], frame: str | None) -> tuple[str, ...]:
-        """What is computed, for headers and ``explain``; ``residual`` names the unwhitened one."""
+    def lines(self, residual: str, m: int, variables: Sequence[str], frame: str | None) -> tuple[str, ...]:
+        """What is computed, for headers and ``explain``; ``residual`` names the unwhitened one, of dim m."""
         u = f"{KEYWORD} {residual}" if self.noise else residual
         found: list[str] = []
         if self.noise:
-            place = f", given in {frame}" if frame else ", in the residual's own units"
-            found.append(f"noise: {self.noise.name}; {KEYWORD}: {self.noise.meaning}{place}")
+            place = f"given in {frame}" if frame else "in the residual's own units"
+            found.append(f"noise: {self.noise.name}, {place}")
+        weights = [f"{w.name} ({w.kind}): {w.meaning}" for w in self.weights(m)]
+        found += weights[: len(found)]
         if not self.loss:
             return (*found, f"res = {u}", *(f"res_D_{v} = {KEYWORD} {residual}_D_{v}" for v in variables))
         value, jacobian, where = self.mode.formula
@@ -172,10 +184,26 @@ class Weighting:
         return (
             *found,
             f"loss: {self.loss.name}, rho(s) = {self.loss.formula}; the cost is rho(s) / 2",
+            *weights[1 if self.noise else 0 :],
             f"mode: {self.mode.name}; res^T res_D_{variables[0]} is the exact gradient of the cost",
             f"u = {u}, s = |u|^2, {where}",
             f"res = {value}",
             *(f"res_D_{v} = {jacobian.format(J)}" for v, J in zip(variables, slopes, strict=True)),
+        )
+
+    def latex_rows(self, residual: str, variables: Sequence[str]) -> tuple[str, ...]:
+        r"""Rows of an ``aligned`` environment: what ``res`` and its Jacobians are, with S = ``sqrt_info``."""
+        S = "S\\, " if self.noise else ""
+        slopes = [rf"\frac{{\partial {residual}}}{{\partial {v}}}" for v in variables]
+        made = [rf"\mathrm{{res}}_{{{v}}}" for v in variables]
+        if not self.loss:
+            rows = [rf"\mathrm{{res}} &= {S}{residual}"]
+            return (*rows, *(f"{name} &= {S}{slope}" for name, slope in zip(made, slopes, strict=True)))
+        value, weight, where = self.mode.latex
+        return (
+            rf"u &= {S}{residual},\; s = \left\lVert u \right\rVert^{{2}},\; {where}",
+            rf"\mathrm{{res}} &= {value}",
+            *(f"{name} &= {weight} {S}{slope}" for name, slope in zip(made, slopes, strict=True)),
         )
 
     def draw(self, generator: np.random.Generator, m: int) -> dict[str, NDArray[np.float64]]:

@@ -17,6 +17,8 @@ from .graph import Graph as Graph
 from .graph import Parameter as Parameter
 from .graph import topological as topological
 from .jacobian_text import jacobian_formulas as jacobian_formulas
+from .latex_names import latex_name as latex_name
+from .latex_text import aligned as aligned
 from .latex_text import latex as latex
 from .latex_text import latex_rows as latex_rows
 from .storing import LayoutLike as LayoutLike

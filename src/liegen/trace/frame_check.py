@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain
 from typing import Any, NoReturn
 
 from liegen.errors import DefinitionError
-from liegen.manifolds import Calibration, Leaf, Manifold, Node, Value, Vector
+from liegen.manifolds import Leaf, Node, Value, Vector
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
 
 from .formulas import show
-from .frame_names import Declared, Kind, is_map, needed
+from .frame_declared import is_map, pieces
+from .frame_fit import leaves, misfit
+from .frame_names import Kind
+from .frame_products import by_part, framed, own_frames, unknown
 from .frame_report import FrameReport
 from .frame_rules import rule
 from .frame_step import HATCH, Step
-from .frame_terms import Frame, Framed, Known, Solver, Sought, mapping, sought, vector
+from .frame_terms import Frame, Framed, Solver, Sought, made_of
 from .frame_text import lines
-from .graph import Call, Graph, Parameter
+from .graph import Call, Graph, Parameter, topological
 from .notation import ATOM, Text
 
 #: Operands longer than this are shown as dots.
@@ -32,32 +37,66 @@ def check_frames(graph: Graph) -> FrameReport:
     Raises DefinitionError, with the line and the likely repair, where declared frames do not fit. Values
     without declared frames fit anything.
     """
-    solver = Solver()
-    values = {id(p.node): _of_parameter(p) for p in graph.parameters}
-    inside = _Inside.of(graph.calls)
+    found = _Check(graph, Solver(), {p.node: framed(p, graph.parameters) for p in graph.parameters})
     for node in graph.nodes():
-        if id(node) not in values:
-            values[id(node)] = _of_node(node, values, solver, graph, inside)
+        found.add(node, node)
     for call in graph.calls:
         if call.checked:
-            _check_call(call, values, solver, graph)
-    _coincide_at_zero(graph, values, solver)
-    return _report(graph, values, solver)
+            _check_call(call, found)
+    _coincide_at_zero(found)
+    return _report(found)
 
 
-def _of_parameter(p: Parameter) -> Framed:
-    if p.frames is not None:
-        return _declared(p.frames, p.manifold, [Known(name) for name in p.frames.names])
-    if is_map(p.manifold):
-        camera = issubclass(p.manifold, Calibration)
-        return sought("", "" if camera else f"the body frame of {p.name}", is_map=True)
-    return sought(f"the frame of {p.name}" if needed(p.manifold) else "", is_map=False)
+@dataclass(frozen=True)
+class _Check:
+    """A check that runs: ``values`` grows."""
 
+    graph: Graph
+    solver: Solver
+    values: dict[Node, Framed]
 
-def _declared(d: Declared, manifold: type[Manifold], frames: list[Frame]) -> Framed:
-    if is_map(manifold):
-        return mapping(frames[0], frames[1] if len(frames) > 1 else Sought())
-    return vector(frames[0], d.kind)
+    @cached_property
+    def inside(self) -> _Inside:
+        """Which nodes belong to calls."""
+        return _Inside.of(self.graph.calls)
+
+    def add(self, node: Node, origin: Node) -> Framed:
+        """The frames of a node and, of an operation on products, of those on its parts.
+
+        ``origin`` is the node of the graph that it is, or is part of.
+        """
+        if node not in self.values:
+            unchecked = isinstance(node.operation, Leaf) or id(origin) in self.inside.unchecked
+            self.values[node] = unknown(node.manifold) if unchecked else self._found(node, origin)
+        return self.values[node]
+
+    def _found(self, node: Node, origin: Node) -> Framed:
+        for operand in node.operands:
+            self.add(operand, origin)
+        parts = by_part(node)
+        if parts:
+            whole = made_of([self.add(n, origin) for n in parts], [n.manifold.form.dim for n in parts])
+            return replace(whole, kind=Kind.TANGENT) if issubclass(node.manifold, Vector) else whole
+        return rule(node)(self._step(node, origin))
+
+    def _step(self, node: Node, origin: Node) -> Step:
+        operands = tuple(self.values[n] for n in node.operands)
+
+        def refuse(message: str) -> NoReturn:
+            call, text = self.inside.calls.get(id(origin)), _texts(node)[node].text
+            site = call.site if call else origin.site
+            where = f"in {call.name} ({origin.site}), " if call else ""
+            raise DefinitionError(f"{site}: {self.graph.name}: {where}{text}: {message}")
+
+        def say() -> tuple[str, ...]:
+            texts = _texts(node)
+            return tuple(_receiver(texts[n]) for n in node.operands)
+
+        def route(k: int, kind: Kind, to: Frame) -> str | None:
+            way = self.solver.name(operands[k].outer), self.solver.name(to)
+            return _route(self.graph.parameters, node.operands[k].manifold, say()[k], way, kind)
+
+        return Step(node, operands, self.solver, say, refuse, route)
 
 
 @dataclass(frozen=True)
@@ -89,38 +128,12 @@ def _body(call: Call) -> list[int]:
     return [key for key, body in seen.items() if body]
 
 
-def _of_node(
-    node: Node, values: Mapping[int, Framed], solver: Solver, graph: Graph, inside: _Inside
-) -> Framed:
-    if isinstance(node.operation, Leaf) or id(node) in inside.unchecked:
-        return sought(is_map=is_map(node.manifold))
-
-    def refuse(message: str) -> NoReturn:
-        call, text = inside.calls.get(id(node)), _texts(graph)[id(node)].text
-        site = call.site if call else node.site
-        where = f"in {call.name} ({node.site}), " if call else ""
-        raise DefinitionError(f"{site}: {graph.name}: {where}{text}: {message}")
-
-    def route(k: int, kind: Kind, to: Frame) -> str | None:
-        text, frame = say()[k], values[id(node.operands[k])].outer
-        return _route(
-            graph.parameters, node.operands[k].manifold, text, (solver.name(frame), solver.name(to)), kind
-        )
-
-    def say() -> tuple[str, ...]:
-        texts = _texts(graph)
-        return tuple(_receiver(texts[id(n)]) for n in node.operands)
-
-    step = Step(node, tuple(values[id(n)] for n in node.operands), solver, say, refuse, route)
-    return rule(node)(step)
-
-
-def _texts(graph: Graph) -> dict[int, Text]:
-    """The text of every node; of long operands only dots."""
-    texts: dict[int, Text] = {}
-    for node in graph.nodes():
-        operands = {id(n): texts[id(n)] for n in node.operands}
-        texts[id(node)] = show(node, {k: t if len(t.text) <= _LONG else _DOTS for k, t in operands.items()})
+def _texts(last: Node) -> dict[Node, Text]:
+    """The text of a node and of all that it needs; of long operands only dots."""
+    texts: dict[Node, Text] = {}
+    for node in topological([last]):
+        operands = {id(n): texts[n] for n in node.operands}
+        texts[node] = show(node, {k: t if len(t.text) <= _LONG else _DOTS for k, t in operands.items()})
     return texts
 
 
@@ -139,93 +152,85 @@ def _route(
 ) -> str | None:
     """How a declared pose or rotation takes a vector from one frame to the other."""
     free = kind in (Kind.FREE, Kind.DIFFERENCE, Kind.TANGENT)
-    for p in parameters:
-        pose, rotation = issubclass(p.manifold, Pose), issubclass(p.manifold, Rotation)
-        form: Any = p.manifold.form
-        space = form.rotation.space if pose else form.space if rotation else 0
-        if p.frames is None or not issubclass(moved, Vector) or moved.form.dim != space:
+    for p in chain.from_iterable(pieces(a.name, a.manifold, a.frames) for a in parameters):
+        rotation = issubclass(p.manifold, Rotation)
+        if p.declared is None or not is_map(p.manifold) or not issubclass(moved, Vector):
             continue
-        turn, moves = f"{p.name}.rotation" if pose else p.name, pose and not free
-        if p.frames.names == way[::-1]:
-            return f"{p.name}.transform_from({text})" if moves else f"{turn} @ {text}"
-        if p.frames.names == way:
-            return f"{p.name}.transform_to({text})" if moves else f"{turn}.unrotate({text})"
+        form: Any = p.manifold.form if rotation else getattr(p.manifold.form, "rotation", None)
+        if form is None or moved.form.dim != form.space:
+            continue
+        turn, moves = p.path if rotation else f"{p.path}.rotation", not rotation and not free
+        pose = p.path if issubclass(p.manifold, Pose) else f"{p.path}.pose"
+        if p.declared.names == way[::-1]:
+            return f"{pose}.transform_from({text})" if moves else f"{turn} @ {text}"
+        if p.declared.names == way:
+            return f"{pose}.transform_to({text})" if moves else f"{turn}.unrotate({text})"
     return None
 
 
-def _check_call(call: Call, values: Mapping[int, Framed], solver: Solver, graph: Graph) -> None:
+def _check_call(call: Call, found: _Check) -> None:
     """What is given to a factor with declared frames has frames that fit together as they do there."""
     scope: dict[str, Frame] = {}
     for a in call.arguments:
-        if a.frames is None or id(a.node) not in values:  # a constant, or not used
+        if a.node not in found.values:  # a constant, or not used
             continue
-        wanted = [scope.setdefault(name, Sought(untyped=False)) for name in a.frames.names]
-        given = values[id(a.node)]
-        pairs = [(given.outer, wanted[0], a.frames.names[0])]
-        if is_map(a.manifold) and len(wanted) > 1:
-            pairs.append((given.inner, wanted[1], a.frames.names[1]))
-        for frame, meant, name in pairs:
-            if not solver.equal(frame, meant):
-                raise DefinitionError(
-                    f"{call.site}: {graph.name}: {call.name}: argument {a.name!r} is given with frame "
-                    f"{solver.name(frame)} where its {name} is {solver.name(meant)} by the others; {HATCH}"
-                )
-        kinds = {a.frames.kind, given.kind if solver.declared(given.outer) else Kind.OPEN}
-        if kinds == {Kind.POINT, Kind.FREE}:
-            raise DefinitionError(
-                f"{call.site}: {graph.name}: {call.name}: argument {a.name!r} is a {a.frames.kind.value} "
-                f"in {a.frames.names[0]}, it is given a {given.kind.value}; {HATCH}"
-            )
+        own = own_frames(a, call.arguments)
+
+        def meant(name: str, a: Parameter = a, own: tuple[str, ...] = own) -> Frame:
+            key = f"{name} of {a.name}" if name in own else name
+            return scope.setdefault(key, Sought(untyped=False))
+
+        why = misfit(a.name, a.manifold, a.frames, found.values[a.node], found.solver, meant)
+        if why:
+            raise DefinitionError(f"{call.site}: {found.graph.name}: {call.name}: argument {why}; {HATCH}")
 
 
-def _coincide_at_zero(graph: Graph, values: Mapping[int, Framed], solver: Solver) -> None:
+def _coincide_at_zero(found: _Check) -> None:
     """A measurement without declared frames has the body frame of what it measures."""
-    for node in graph.nodes():
+    for node in found.values:
         if node.operation.name == "local" and all(is_map(n.manifold) for n in node.operands):
-            measured, predicted = (values[id(n)].inner for n in node.operands)
-            if solver.name(measured) is None and solver.name(predicted):
-                solver.equal(measured, predicted)
+            measured, predicted = (found.values[n].inner for n in node.operands)
+            if found.solver.name(measured) is None and found.solver.name(predicted):
+                found.solver.equal(measured, predicted)
 
 
-def _report(graph: Graph, values: Mapping[int, Framed], solver: Solver) -> FrameReport:
+def _report(found: _Check) -> FrameReport:
+    graph, values, solver = found.graph, found.values, found.solver
     arguments: dict[str, tuple[str, ...]] = {}
     columns: dict[str, str] = {}
     for p in graph.parameters:
-        x = values[id(p.node)]
-        ends = (x.outer, x.inner) if is_map(p.manifold) else (x.outer,)
-        names = [solver.name(f) for f in ends]
-        known = tuple(name for name in names if name is not None)
-        if len(known) == len(names):
-            arguments[p.name] = known
-        column = solver.said(x.inner)
-        if p.variable and column and not issubclass(p.manifold, Calibration):
+        for piece, value in zip(
+            pieces(p.name, p.manifold, p.frames), leaves(p.manifold, values[p.node]), strict=True
+        ):
+            ends = (value.outer, value.inner) if is_map(piece.manifold) else (value.outer,)
+            names = [solver.name(f) for f in ends]
+            known = tuple(name for name in names if name is not None)
+            if len(known) == len(names):
+                arguments[piece.path] = known
+        column = _spread(values[p.node], p.manifold, solver, "columns")
+        if p.variable and column:
             columns[p.name] = column
-    rows = {name: row for name, node in graph.outputs if (row := _rows(node, values, solver))}
+    rows = {
+        name: row
+        for name, node in graph.outputs
+        if (row := _spread(values[node], node.manifold, solver, "rows"))
+    }
     declared = any(p.frames for p in graph.parameters)
     report = FrameReport(declared, arguments, rows, columns)
     return replace(report, lines=lines(graph, values, report))
 
 
-def _rows(node: Node, values: Mapping[int, Framed], solver: Solver) -> str | None:
-    """The frame of a value's tangent; of stacked vectors the frame of each."""
-    parts = list(_parts(node))
-    if len(parts) == 1:
-        camera = issubclass(node.manifold, Calibration)
-        return None if camera else solver.said(values[id(node)].inner)
-    said: list[str] = []
-    start = 0
-    for part in parts:
-        end = start + part.manifold.form.dim
-        frame = solver.said(values[id(part)].inner)
-        if frame:
-            said.append(f"{frame} (rows {start}:{end})")
-        start = end
-    return ", ".join(said) or None
-
-
-def _parts(node: Node) -> Iterator[Node]:
-    if node.operation.name != "stack":
-        yield node
-        return
-    for part in node.operands:
-        yield from _parts(part)
+def _spread(value: Framed, manifold: type[Value], solver: Solver, what: str) -> str | None:
+    """The frame of a value's tangent; of stacked vectors and of products the frame of each part."""
+    if value.kind is Kind.CAMERA:
+        return None
+    said: list[tuple[str, int, int]] = []
+    for part in value.flat():
+        frame = None if part.value.kind is Kind.CAMERA else solver.said(part.value.inner)
+        if said and frame and said[-1][0] == frame and said[-1][2] == part.start:
+            said[-1] = (frame, said[-1][1], part.stop)
+        elif frame:
+            said.append((frame, part.start, part.stop))
+    if not value.parts or (len(said) == 1 and said[0][1:] == (0, manifold.form.dim)):
+        return said[0][0] if said else solver.said(value.inner)
+    return ", ".join(f"{frame} ({what} {start}:{stop})" for frame, start, stop in said) or None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import accumulate
 
 from .frame_names import Kind
 
@@ -19,11 +20,14 @@ class Known:
 class Sought:
     """A frame that is not declared. ``label`` says what it is while nothing else is known.
 
-    What an ``untyped`` frame teaches may inform a report but never causes an error.
+    What an ``untyped`` frame teaches may inform a report but never causes an error, except that it is none
+    of ``others``: frames that the class of a product tells apart from it. With such it is a frame by itself,
+    named by its label.
     """
 
     label: str = ""
     untyped: bool = True
+    others: tuple[str, ...] = ()
 
 
 Frame = Known | Sought
@@ -31,16 +35,35 @@ Frame = Known | Sought
 
 @dataclass(frozen=True)
 class Framed:
-    """The frames of a value. Only maps have an inner frame that differs from the outer one."""
+    """The frames of a value. Only maps have an inner frame that differs from the outer one.
+
+    Products, and vectors that are stacked or of a product's tangent, have parts with frames of their own.
+    """
 
     outer: Frame
     inner: Frame
     kind: Kind
+    parts: tuple[Part, ...] = ()
+
+    def flat(self, start: int = 0) -> Iterator[Part]:
+        """The parts of all parts, by their place in the tangent; none where there is only one value."""
+        for part in self.parts:
+            inner = list(part.value.flat(start + part.start))
+            yield from inner or [Part(part.value, start + part.start, start + part.stop)]
+
+
+@dataclass(frozen=True)
+class Part:
+    """The frames of a part, and its coordinates in the tangent (``stop`` not counted)."""
+
+    value: Framed
+    start: int
+    stop: int
 
 
 def _follows(a: Sought, b: Sought) -> bool:
     """Which of two frames points to the other: what is untyped must not taint, what has a label stays."""
-    return (a.untyped, not a.label) > (b.untyped, not b.label)
+    return (not a.others, a.untyped, not a.label) > (not b.others, b.untyped, not b.label)
 
 
 @dataclass
@@ -71,21 +94,24 @@ class Solver:
         if not isinstance(x, Sought) or (isinstance(y, Sought) and _follows(y, x)):
             x, y = y, x
         assert isinstance(x, Sought)
-        self._bound[x] = (y, untyped)
+        if isinstance(y, Known) and y.name in x.others:
+            return False
+        if not (isinstance(y, Sought) and x.others and y.others):  # two by themselves are not one
+            self._bound[x] = (y, untyped)
         return True
 
     def name(self, frame: Frame) -> str | None:
         """The name of a frame, if it is known or inferred."""
         found, _ = self._find(frame)
-        return found.name if isinstance(found, Known) else None
+        if isinstance(found, Known):
+            return found.name
+        return found.label if found.others else None
 
     def said(self, frame: Frame) -> str | None:
         """The name of a frame, or a description such as ``the body frame of x``."""
         found, _ = self._find(frame)
-        if isinstance(found, Known):
-            return found.name
         own = frame.label if isinstance(frame, Sought) else ""
-        return own or found.label or None
+        return self.name(frame) or own or (found.label if isinstance(found, Sought) else "") or None
 
     def declared(self, frame: Frame) -> bool:
         """Whether the frame is known from declared names alone."""
@@ -103,16 +129,23 @@ def vector(frame: Frame, kind: Kind) -> Framed:
     return Framed(frame, frame, kind)
 
 
-def mapping(outer: Frame, inner: Frame) -> Framed:
+def mapping(outer: Frame, inner: Frame, kind: Kind = Kind.MAP) -> Framed:
     """A map from its inner to its outer frame."""
-    return Framed(outer, inner, Kind.MAP)
+    return Framed(outer, inner, kind)
 
 
-def sought(outer: str = "", inner: str = "", *, is_map: bool) -> Framed:
-    """A value of which nothing is declared."""
-    if is_map:
-        return mapping(Sought(outer), Sought(inner))
-    return vector(Sought(outer), Kind.OPEN)
+def sought(label: str = "") -> Framed:
+    """A vector of which nothing is declared."""
+    return vector(Sought(label), Kind.OPEN)
+
+
+def made_of(values: Sequence[Framed], dims: Sequence[int]) -> Framed:
+    """A value of these parts, whose tangents have these dimensions."""
+    ends = list(accumulate(dims, initial=0))
+    return replace(
+        sought(),
+        parts=tuple(Part(v, a, b) for v, a, b in zip(values, ends, ends[1:], strict=False)),
+    )
 
 
 def common(kinds: Sequence[Kind]) -> Kind:

@@ -4,43 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from liegen.manifolds import S2, SO2, Calibration, Leaf, Node
-from liegen.manifolds.pose import Pose
+from liegen.manifolds import S2, SO2, Leaf, Node, Product
 
-from .frame_names import Kind, is_map
+from .frame_declared import MAPS, Piece, is_map, pieces
+from .frame_fit import leaves
+from .frame_names import Kind
 from .frame_report import FrameReport
 from .frame_terms import Framed
-from .graph import Graph, Parameter
+from .graph import Graph
 
 
-def lines(graph: Graph, values: Mapping[int, Framed], report: FrameReport) -> tuple[str, ...]:
+def lines(graph: Graph, values: Mapping[Node, Framed], report: FrameReport) -> tuple[str, ...]:
     """What each argument is, then the frames of rows, noise and columns."""
     return (*_arguments(graph, values, report), *_outputs(graph, values, report), *_columns(graph, report))
 
 
-def _arguments(graph: Graph, values: Mapping[int, Framed], report: FrameReport) -> Iterator[str]:
+def _arguments(graph: Graph, values: Mapping[Node, Framed], report: FrameReport) -> Iterator[str]:
     for p in graph.parameters:
-        if p.name in report.arguments:
-            kind = values[id(p.node)].kind
-            inferred = "" if p.frames else " (inferred)"
-            yield f"{p.name}: {_described(p, report.arguments[p.name], kind)}{inferred}"
-        elif p.frames and issubclass(p.manifold, SO2):
-            yield f"{p.name}: bearing in {p.frames.names[0]}"
+        listed = pieces(p.name, p.manifold, p.frames)
+        for piece, value in zip(listed, leaves(p.manifold, values[p.node]), strict=True):
+            if piece.path in report.arguments:
+                inferred = "" if piece.declared else " (inferred)"
+                yield f"{piece.path}: {_described(piece, report.arguments[piece.path], value)}{inferred}"
+            elif piece.declared and issubclass(piece.manifold, SO2):
+                yield f"{piece.path}: bearing in {piece.declared.names[0]}"
 
 
-def _described(p: Parameter, names: tuple[str, ...], kind: Kind) -> str:
-    if issubclass(p.manifold, Calibration):
-        return f"calibration, from {names[1]} to {names[0]}"
-    if issubclass(p.manifold, Pose):
-        return f"pose of {names[1]} in {names[0]}"
-    if is_map(p.manifold):
-        return f"rotation from {names[1]} to {names[0]}"
-    if issubclass(p.manifold, S2):
-        return f"direction in {names[0]}"
-    return f"{kind.value} in {names[0]}"
+def _described(piece: Piece, names: tuple[str, ...], value: Framed) -> str:
+    text = next((text for base, text in MAPS.items() if issubclass(piece.manifold, base)), None)
+    if text:
+        return text.format(*names)
+    return f"{'direction' if issubclass(piece.manifold, S2) else value.kind.value} in {names[0]}"
 
 
-def _outputs(graph: Graph, values: Mapping[int, Framed], report: FrameReport) -> Iterator[str]:
+def _outputs(graph: Graph, values: Mapping[Node, Framed], report: FrameReport) -> Iterator[str]:
     for name, node in graph.outputs:
         if name in report.rows:
             frame, basis = report.rows[name], _basis(node)
@@ -62,10 +59,10 @@ def _basis(node: Node) -> str:
     return f"in the tangent basis at {at.show if isinstance(at, Leaf) else 'the prediction'}"
 
 
-def _shape(node: Node, values: Mapping[int, Framed]) -> str:
-    if is_map(node.manifold) or issubclass(node.manifold, S2):
+def _shape(node: Node, values: Mapping[Node, Framed]) -> str:
+    if is_map(node.manifold) or issubclass(node.manifold, S2 | Product):
         return "tangent"
-    kind = values[id(node)].kind
+    kind = values[node].kind
     return (Kind.FREE if kind is Kind.DIFFERENCE else kind).value
 
 

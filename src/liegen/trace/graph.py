@@ -10,7 +10,7 @@ from liegen.errors import Site
 from liegen.layouts import OWN, Storage, Stored, storage
 from liegen.manifolds import Manifold, Node
 
-from .frame_names import Declared
+from .frame_declared import Declared
 from .frame_report import FrameReport
 
 

@@ -6,7 +6,7 @@ and KaTeX.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from liegen.manifolds import Leaf, Node
@@ -22,9 +22,13 @@ from .notation import ATOM, LATEX, Text
 
 
 def latex(graph: Graph) -> str:
+    """The rows of a graph, aligned."""
+    return aligned(latex_rows(graph))
+
+
+def aligned(rows: Iterable[str]) -> str:
     r"""An ``aligned`` environment, to be set between ``\[`` and ``\]`` or two dollar signs."""
-    rows = " \\\\\n".join(f"  {row}" for row in latex_rows(graph))
-    return "\\begin{aligned}\n" + rows + "\n\\end{aligned}"
+    return "\\begin{aligned}\n" + " \\\\\n".join(f"  {row}" for row in rows) + "\n\\end{aligned}"
 
 
 def latex_rows(graph: Graph) -> tuple[str, ...]:

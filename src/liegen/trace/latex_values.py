@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from liegen.manifolds import Leaf, Node, Vector
 
 from .blocks import additive, elementwise, exponential, positions
-from .latex_names import latex_number, upright
+from .latex_names import latex_name, latex_number, upright
 from .notation import (
     ACTION,
     ATOM,
@@ -157,7 +157,10 @@ def _layout(node: Node) -> Layout:
     ):
         if name in table:
             return table[name]
-    return _called(name, operation.show.startswith("{0}."), len(dims))
+    method, _, attribute = operation.show.partition("{0}.")
+    if name == "part":
+        return Layout(f"#0.{latex_name(attribute)}")
+    return _called(name.removesuffix("_of"), not method and bool(attribute), len(dims))
 
 
 def _called(name: str, method: bool, operands: int) -> Layout:

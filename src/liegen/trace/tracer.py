@@ -18,7 +18,8 @@ from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_a
 
 from .charting import ChartLike, common_chart, in_charts
 from .frame_check import check_frames
-from .frame_names import Declared, Frames, declared
+from .frame_declared import Declared, declared
+from .frame_names import Frames
 from .graph import Call, Domain, Graph, Parameter, topological
 
 

@@ -15,6 +15,8 @@ stands here.
 
 from __future__ import annotations
 
+from .change import from_chart as from_chart
+from .change import to_chart as to_chart
 from .covariance import block_diagonal as block_diagonal
 from .covariance import joint as joint
 from .covariance import propagate as propagate

@@ -96,9 +96,7 @@ def propagate(J: ArrayLike, S: ArrayLike) -> Array:
     """J S J^T: covariance of J n for n ~ N(0, S).
 
     J has shape (..., m, n), S (..., n, n). With the Jacobian of a function in its tangent spaces this is
-    the function's covariance (micro Lie, "Uncertainty in manifolds, covariance propagation"); with the
-    column map M(x) of another chart it takes a covariance of that chart's tangent vectors to the body
-    frame.
+    the function's covariance (micro Lie, "Uncertainty in manifolds, covariance propagation").
     """
     jacobian = numbers(J, "J")
     if jacobian.ndim < 2:

@@ -29,6 +29,10 @@ def sample(z: G, S: ArrayLike, rng: np.random.Generator, size: int | tuple[int, 
     ``x2 = x1 @ sample(z, S, rng)``.
     """
     adjoint(z, "z")
+    if not isinstance(rng, np.random.Generator):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise UncertaintyError(
+            f"{here()}: rng must be a generator, np.random.default_rng(seed), got a {type(rng).__name__}"  # pyright: ignore[reportUnreachable]
+        )
     n = z.form.dim
     root = np.linalg.cholesky(covariance(S, n))
     batch = np.broadcast_shapes(np.asarray(z).shape[:-1], root.shape[:-2])
