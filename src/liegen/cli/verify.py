@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Generator, Iterable
-from contextlib import contextmanager
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
+from .accuracy import run_accuracy
 from .shared import (
+    bar,
     chart_option,
     chosen,
     count,
     groups_option,
     names_option,
     noise_options,
-    progress,
     source_argument,
     table,
     weighed,
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from liegen.verify import Check, FactorReport, Report
 
 #: Checks whose worst figure has a column: relative errors, and the slope of the remainder (2 is right).
-MEASURED = {"value": "value", "Jacobian": "Jacobian", "differences": "differences", "Taylor": "slope"}
+MEASURED = {"value": "value", "Jacobian": "Jacobian", "gradient": "gradient", "differences": "differences", "Taylor": "slope"}
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
 #: Skipped cases that are named for a factor.
@@ -46,6 +45,10 @@ LISTED = 6
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
 @chart_option
+@click.option("--accuracy", is_flag=True, help="The worst errors by rotation angle, in every chart; without"
+    " SOURCE and --group of the library and all groups. --samples are those of an angle.")  # fmt: skip
+@click.option("--peers", is_flag=True, help="With --accuracy: the same of GTSAM, SymForce, jaxlie and Sophus,"
+    " where they are installed.")  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def verify(
     source: str | None,
@@ -57,20 +60,31 @@ def verify(
     mode: str | None,
     samples: int | None,
     seed: int,
+    accuracy: bool,
+    peers: bool,
     as_json: bool,
 ) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
+    if peers and not accuracy:
+        raise click.UsageError("--peers is a part of --accuracy; give both")
+    if accuracy:
+        if loss or mode:
+            raise click.UsageError("--accuracy is of factors without a loss")
+        run_accuracy(
+            source, names, groups, chart, noise, samples=samples, seed=seed, peers=peers, as_json=as_json
+        )
+        return
     from liegen.verify import verify as run
     from liegen.verify.run import SAMPLES
 
     functions = weighed(chosen(source, names, groups, chart), noise, loss, mode)
     started = time.monotonic()
-    with _shown(len(functions)) as told:
+    with bar("verify", "verified") as told:
         report = run(
             functions,
             samples=samples or SAMPLES,
             seed=seed,
-            progress=told,
+            progress=(lambda f, done, total: told(f.factor, done, total)) if told else None,
             reload=partial(weighed_by_name, source, groups, chart, noise, loss, mode),
         )
     if as_json:
@@ -79,21 +93,6 @@ def verify(
         _print(report, time.monotonic() - started)
     if not report.passed:
         raise click.exceptions.Exit(1)
-
-
-@contextmanager
-def _shown(factors: int) -> Generator[Callable[[FactorReport, int, int], None] | None]:
-    """A progress bar while standard error is a terminal."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    with progress() as bar:
-        task = bar.add_task("verify", total=factors)
-
-        def told(report: FactorReport, done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, description=f"verified {report.factor}")
-
-        yield told
 
 
 def _print(report: Report, seconds: float) -> None:
