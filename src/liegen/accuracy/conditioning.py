@@ -50,7 +50,8 @@ def _vector_parts(graph: Graph, values: Values) -> Iterator[tuple[str, float]]:
         d = names.get(node.operands[1])
         if d:
             (preset,) = node.operation.parameters  # type: ignore[attr-defined]
-            turn = values[d] if len(values[d]) == 3 or preset.space.order == "rotation-first" else values[d][3:]
+            turn = (
+                values[d] if len(values[d]) == 3 or preset.space.order == "rotation-first" else values[d][3:]
+            )
             v = np.array(turn[:3]) * preset.space.scale / 2
             yield d, 1.0 - float(v @ v)
-

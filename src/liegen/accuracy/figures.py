@@ -68,17 +68,24 @@ def measure_function(function: AnyFunction, place: Workspace, count: int, seed: 
     points, refused = draw_points(function, count, seed)
     expected, left = reference_blocks(function, points)
     outside = tuple(Left(title, (), count, "outside") for title in refused)
+    figures = target_figures(function, place, expected, points)
+    return Measured(tuple(figures), (*left, *outside), len(points))
+
+
+def target_figures(
+    function: AnyFunction, place: Workspace, expected: Expected, points: Sequence[Point]
+) -> list[Figure]:
+    """The figures of C and of NumPy."""
     results: dict[str, list[Mapping[str, Array]]] = {}
     for backend in backends(function.kernel, place) if points else ():
         target = next((t for t in TARGETS if backend.name.partition(",")[0] == t), None)
         if target:
             results.setdefault(target, []).extend(_evaluated(backend, target, points))
-    figures = [
+    return [
         figure
         for target, computed in sorted(results.items())
         for figure in figures_of(expected, points, target, computed)
     ]
-    return Measured(tuple(figures), (*left, *outside), len(points))
 
 
 def _evaluated(backend: Backend, target: str, points: Sequence[Point]) -> list[dict[str, Array]]:
@@ -116,7 +123,9 @@ def reference_blocks(function: AnyFunction, points: Sequence[Point]) -> tuple[Ex
 
 def _floor(point: Point) -> float:
     """Least s: 1, and for small differences of pixels the largest number that goes in."""
-    return max(1.0, *(abs(c) for v in point.sample.values.values() for c in v)) if point.column == SMALL else 1.0
+    return (
+        max(1.0, *(abs(c) for v in point.sample.values.values() for c in v)) if point.column == SMALL else 1.0
+    )
 
 
 def _left(

@@ -112,17 +112,19 @@ def largest(figures: Sequence[Figure], column: int) -> float | None:
     return max((x for f in figures if (x := f.worst[column]) is not None), default=None)
 
 
+def figure_entry(figure: Figure) -> dict[str, Any]:
+    """A figure as plain values."""
+    return {
+        "block": figure.block,
+        "kind": "value" if figure.is_value else "Jacobian",
+        "target": figure.target,
+        "worst": [_number(x) for x in figure.worst],
+    }
+
+
 def _entries(row: Row) -> list[dict[str, Any]]:
     return [
-        {
-            "function": row.function,
-            "presets": row.presets,
-            "block": f.block,
-            "kind": "value" if f.is_value else "Jacobian",
-            "target": f.target,
-            "worst": [_number(x) for x in f.worst],
-        }
-        for f in row.measured.figures
+        {"function": row.function, "presets": row.presets, **figure_entry(f)} for f in row.measured.figures
     ]
 
 

@@ -73,9 +73,7 @@ def accuracy(
         else _serial(jobs, samples, seed, progress)
     )
     measured = {(row.function, row.presets[0]): row for part in done for row in part.rows}
-    rows = [
-        Row(v.function.name, v.presets, measured[v.function.name, v.presets[0]].measured) for v in found
-    ]
+    rows = [Row(v.function.name, v.presets, measured[v.function.name, v.presets[0]].measured) for v in found]
     points = merged([u for part in done for u in part.undefined])
     compiler = next((part.compiler for part in done), "")
     return AccuracyReport(tuple(rows), points, remarks, samples, seed, compiler)
@@ -95,9 +93,7 @@ def _jobs(found: Sequence[Variant]) -> list[_Job]:
 
 def _measured(job: _Job, samples: int, seed: int) -> _Done:
     with workspace([f.kernel for f in job.functions]) as place:
-        rows = [
-            Row(f.name, (job.preset,), measure_function(f, place, samples, seed)) for f in job.functions
-        ]
+        rows = [Row(f.name, (job.preset,), measure_function(f, place, samples, seed)) for f in job.functions]
         points = [u for f in job.functions for u in undefined_points(f, place)]
         return _Done(tuple(rows), tuple(points), place.compiler)
 
@@ -116,9 +112,7 @@ def _parallel(
 ) -> list[_Done]:
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(count, mp_context=context) as pool:
-        futures = {
-            pool.submit(_work, reload, *job.named(), samples, seed): k for k, job in enumerate(jobs)
-        }
+        futures = {pool.submit(_work, reload, *job.named(), samples, seed): k for k, job in enumerate(jobs)}
         results: dict[int, _Done] = {}
         for future in as_completed(futures):
             results[futures[future]] = future.result()

@@ -218,5 +218,3 @@ def merged(points: Sequence[Undefined]) -> tuple[Undefined, ...]:
     for p in points:
         names.setdefault((p.where, p.reason, p.returns), {}).update(dict.fromkeys(p.functions))
     return tuple(Undefined(*key, tuple(functions)) for key, functions in names.items())
-
-

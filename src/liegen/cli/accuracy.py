@@ -59,7 +59,7 @@ def run_accuracy(
         print_report(report)
         if others:
             click.echo()
-            print_peers(others, report)
+            print_peers(others)
     if not report.passed:
         raise click.exceptions.Exit(1)
 
@@ -115,7 +115,11 @@ def print_report(report: AccuracyReport) -> None:
     )
     targets = f"NumPy, and C compiled with {report.compiler}" if report.compiler else "NumPy; no C compiler"
     exceeding = len(report.excesses)
-    click.echo(f"{targets}; {count(exceeding, 'figure')} beyond the bound" if exceeding else f"{targets}; none beyond")
+    click.echo(
+        f"{targets}; {count(exceeding, 'figure')} beyond the bound"
+        if exceeding
+        else f"{targets}; none beyond"
+    )
     for name in report.unmeasured:
         click.echo(f"{name}: nothing could be compared")
 
@@ -167,7 +171,7 @@ def _remarks(report: AccuracyReport) -> Iterable[str]:
         yield f"{_some(names)}: {reason}"
 
 
-def print_peers(peers: PeerReport, report: AccuracyReport) -> None:
+def print_peers(peers: PeerReport) -> None:
     """Each operation of each library beside liegen's."""
     from liegen.accuracy import COLUMNS, NO_ANGLE
 
@@ -176,7 +180,9 @@ def print_peers(peers: PeerReport, report: AccuracyReport) -> None:
     for row in peers.rows:
         lines.append([row.function, row.block, "liegen", *cells(row.ours)[:columns]])
         lines += [["", "", name, *cells([figure])[:columns]] for name, figure in row.theirs]
-    click.echo("Beside other libraries, each in its own chart and from the same stored numbers (! beyond 1e-14):")
+    click.echo(
+        "Beside other libraries, each in its own chart and from the same stored numbers (! beyond 1e-14):"
+    )
     table(("function", "block", "library", *COLUMNS[:columns]), lines, right=range(3, 3 + columns))
     click.echo()
     for line in peers.lines():

@@ -28,7 +28,13 @@ if TYPE_CHECKING:
     from liegen.verify import Check, FactorReport, Report
 
 #: Checks whose worst figure has a column: relative errors, and the slope of the remainder (2 is right).
-MEASURED = {"value": "value", "Jacobian": "Jacobian", "gradient": "gradient", "differences": "differences", "Taylor": "slope"}
+MEASURED = {
+    "value": "value",
+    "Jacobian": "Jacobian",
+    "gradient": "gradient",
+    "differences": "differences",
+    "Taylor": "slope",
+}
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
 #: Skipped cases that are named for a factor.
