@@ -178,12 +178,13 @@ def print_peers(peers: PeerReport) -> None:
     columns = NO_ANGLE
     lines: list[list[str]] = []
     for row in peers.rows:
-        lines.append([row.function, row.block, "liegen", *cells(row.ours)[:columns]])
+        chart = "" if row.preset == "gtsam" else f" ({row.preset})"
+        lines.append([row.function + chart, row.block, "liegen", *cells(row.ours)[:columns]])
         lines += [["", "", name, *cells([figure])[:columns]] for name, figure in row.theirs]
     click.echo(
         "Beside other libraries, each in its own chart and from the same stored numbers (! beyond 1e-14):"
     )
-    table(("function", "block", "library", *COLUMNS[:columns]), lines, right=range(3, 3 + columns))
+    table(("function (chart)", "block", "library", *COLUMNS[:columns]), lines, right=range(3, 3 + columns))
     click.echo()
     for line in peers.lines():
         click.echo(line)

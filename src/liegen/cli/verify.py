@@ -148,8 +148,8 @@ def _remarks(factor: FactorReport) -> Iterable[str]:
                 f"\n{factor.factor}: {check.name} failed: {check.worst:.3g} {check.unit} where "
                 f"{check.bound:.3g} is allowed, at: {check.where or 'no sample'}{note}"
             )
-        elif check.name == "Jacobian" and not check.checked:
-            yield f"{factor.factor}: Jacobian, differences, Taylor: {check.note}"
+        elif check.name == "differences" and not check.checked:
+            yield f"{factor.factor}: differences, Taylor: {check.note}"
         elif check.note not in ("", EVERYWHERE) and check.checked:
             yield f"{factor.factor}: {check.name}: {check.note}"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,17 +19,23 @@ Entries = Mapping[str, Array]
 EPS = float(np.finfo(np.float64).eps)
 
 
-def both_branches(graph: Graph, sample: Sample) -> tuple[Entries, Entries]:
+#: Flat entries of the Jacobians at stored values; the flag takes the other logarithm at a half turn.
+Slopes = Callable[[Values, bool], Entries]
+
+
+def both_branches(graph: Graph, sample: Sample, slopes: Slopes | None = None) -> tuple[Entries, Entries]:
     """Flat entries of all outputs and Jacobians; the second time with the other logarithm at a half turn.
 
-    Both are the same unless the last digits of the inputs decide which logarithm it is.
+    Both are the same unless the last digits of the inputs decide which logarithm it is. ``slopes`` are the
+    Jacobians, by default the derivatives of the outputs.
     """
-    principal = _entries(graph, sample.values, flip=False)
-    other = _outputs(graph, sample.values, flip=True)
-    same = all(np.array_equal(principal[name], x, equal_nan=True) for name, x in other.items())
-    if same or not _undecided(graph, sample, principal, other):
+    jacobians = slopes or (lambda values, flip: _derivatives(graph, values, flip=flip))
+    own, other = (_outputs(graph, sample.values, flip=flip) for flip in (False, True))
+    principal = {**own, **jacobians(sample.values, False)}
+    same = all(np.array_equal(own[name], x, equal_nan=True) for name, x in other.items())
+    if same or not _undecided(graph, sample, own, other):
         return principal, principal
-    return principal, _entries(graph, sample.values, flip=True)
+    return principal, {**other, **jacobians(sample.values, True)}
 
 
 def _undecided(graph: Graph, sample: Sample, principal: Entries, other: Entries) -> bool:
@@ -63,12 +69,11 @@ def _outputs(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
     }
 
 
-def _entries(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
-    entries = _outputs(graph, values, flip=flip)
+def _derivatives(graph: Graph, values: Values, *, flip: bool) -> Entries:
     jacobians: Any = reference.jacobians(graph, values, flip=flip)
-    for name, _ in graph.outputs:
-        for p in graph.parameters:
-            if p.variable:
-                rows = jacobians[name, p.name]
-                entries[f"{name}_D_{p.name}"] = np.array([float(x) for row in rows for x in row])
-    return entries
+    return {f"{name}_D_{variable}": np.array(flat(rows)) for (name, variable), rows in jacobians.items()}
+
+
+def flat(rows: Iterable[Iterable[Any]]) -> list[float]:
+    """The entries of a matrix, row by row, as doubles."""
+    return [float(x) for row in rows for x in row]

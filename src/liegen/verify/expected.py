@@ -19,6 +19,7 @@ from .branches import both_branches
 from .draws import AnyFunction, Sample, batch
 from .rounding import rounding
 from .sphere_slack import slack_of
+from .weighed import defined_slopes
 
 Array = NDArray[np.float64]
 
@@ -61,13 +62,18 @@ class Expected:
 
 
 def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: bool) -> Expected:
-    """Evaluate the reference. ``conditioned`` allows for the rounding in the program too."""
+    """Evaluate the reference. ``conditioned`` allows for the rounding in the program too.
+
+    So do Jacobians of factors with a loss, which are those that the loss defines.
+    """
     graph = function.graph
     slack = np.array([slack_of(graph, s.values) for s in samples])
     slack[slack * ANTIPODE >= 1] = np.inf
-    branches = [both_branches(graph, s) for s in samples]
+    robust = function.weighting is not None and function.weighting.loss is not None
+    slopes = defined_slopes(function) if robust else None
+    branches = [both_branches(graph, s, slopes) for s in samples]
     rough = np.array([conditioned or s.conditioned for s in samples])
-    allowed = rounding(function.kernel.jacobians, batch(tuple(samples))) if rough.any() else {}
+    allowed = rounding(function.kernel.jacobians, batch(tuple(samples))) if rough.any() or robust else {}
     # the shape of a loss may be infinite
     inputs = np.array([max(abs(x) for v in s.values.values() for x in v if np.isfinite(x)) for s in samples])
     blocks: list[Block] = []
@@ -78,7 +84,7 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
         size = np.abs(stacked).max(axis=2)
         if is_value and not is_matrix:
             size = inputs if name == RESIDUAL else np.maximum(inputs, size)
-        extra = np.where(rough, allowed.get(name, 0.0), 0.0)
+        extra = np.where(rough | (robust and not is_value), allowed.get(name, 0.0), 0.0)
         plain = BOUND * np.maximum(1.0, size)
         bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))
         lost = extra / np.broadcast_to(plain, bound.shape).min(axis=0)
