@@ -183,8 +183,8 @@ def test_the_jacobian_is_held_against_its_definition(mode):
     wrong = replace(program, code=tuple(builder.code), results=(res, tuple(moved)))
     broken = prior_r3.whitened("full", "cauchy", mode, name="broken")
     broken.__dict__["kernel"] = replace(made.kernel, name="broken", jacobians=wrong)
-    for function, right in ((made, True), (broken, False)):
-        (report,) = verify([function], samples=6).factors
+    for weighed, right in ((made, True), (broken, False)):
+        (report,) = verify([weighed], samples=6).factors
         checks = {c.name: c.passed for c in report.checks}
         assert checks["gradient"]
         assert checks["Jacobian"] is right

@@ -25,7 +25,7 @@ TARGETS = ("C", "NumPy")
 
 @dataclass(frozen=True)
 class Figure:
-    """Worst errors of a block in one target, relative to max(1, s), by column; None where nothing is compared.
+    """Worst errors of a block in one target, relative to max(1, s), by column; None: nothing is compared.
 
     s is the largest absolute entry of the reference's block (in the column ``small`` of the inputs); errors
     are divided by :func:`liegen.accuracy.conditioning.amplification`. ``where`` is the kind of the worst

@@ -1,7 +1,7 @@
 """The samples of the accuracy table: for each rotation angle a few, built so that the angle is that one.
 
-The angle is that of the rotation that matters: of the residual, of the argument of ``log`` and ``exp``, and in
-one of the kinds of every element. Positions are of the size of a metre; ``liegen verify`` has other sizes.
+The angle is that of the rotation that matters: of the residual, of the argument of ``log`` and ``exp``, and
+in one of the kinds of every element. Positions are of the size of a metre; ``liegen verify`` has other sizes.
 Measured pixels are anywhere in the image; a column of its own has those near the prediction.
 """
 
@@ -37,9 +37,9 @@ ANGLES: tuple[tuple[str, float], ...] = (
 #: The columns; the last two are for functions without rotations, and for small differences of pixels.
 COLUMNS: tuple[str, ...] = (*(title for title, _ in ANGLES), "no angle", "small")
 NO_ANGLE, SMALL = len(ANGLES), len(ANGLES) + 1
-#: ``axis``: elements turned by quarters and halves of turns, the angle about a coordinate axis, which is exact.
-#: ``pose``: every element is turned by the angle too. ``random``: any element, any axis. ``negated``: the same
-#: with at least one rotation stored as -q.
+#: ``axis``: elements turned by quarters and halves of turns, the angle about a coordinate axis: exact.
+#: ``pose``: every element is turned by the angle too. ``random``: any element, any axis. ``negated``: the
+#: same with at least one rotation stored as -q.
 KINDS = ("axis", "pose", "random", "negated")
 #: What rounding leaves of a zero in a rotation by exactly pi.
 ROUNDING = 2.5e-16
@@ -55,7 +55,7 @@ class Point:
 
 @dataclass(frozen=True)
 class _Units(Draw):
-    """Unit vectors along a coordinate, other vectors at random: quaternions of half turns, coordinate axes."""
+    """Unit vectors along a coordinate: quaternions of half turns, coordinate axes. Others at random."""
 
     place: int | None = None  # None: any
 
@@ -126,7 +126,7 @@ def draw_points(function: AnyFunction, count: int, seed: int) -> tuple[tuple[Poi
 
 
 def measured_pixel(graph: Graph) -> str | None:
-    """The argument that is subtracted as a measured pixel, if there is one: numbers far above the residual."""
+    """The argument that is subtracted as a measured pixel, if there is one: far above the residual."""
     ((_, node), *_) = graph.outputs
     calibrated = any(n.operation.name == "uncalibrate" for n in graph.nodes())
     names = {p.node: p.name for p in graph.parameters}

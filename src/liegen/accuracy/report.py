@@ -13,10 +13,9 @@ from .points import COLUMNS
 from .undefined import Undefined
 from .variants import Remark
 
-
 UNIT = (
-    "relative to max(1, s), s the largest absolute entry of the reference's block (small: of the inputs); on S2 "
-    "times the sine of an angle beyond a quarter turn; retract by the vector part of a quaternion times "
+    "relative to max(1, s), s the largest absolute entry of the reference's block (small: of the inputs); on "
+    "S2 times the sine of an angle beyond a quarter turn; retract by the vector part of a quaternion times "
     "w = cos(angle/2), its Jacobian by d times w^2"
 )
 

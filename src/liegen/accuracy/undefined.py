@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -193,7 +193,12 @@ _RULES: tuple[_Rule, ...] = (
         _named("norm"),
         _coincident,
     ),
-    _Rule("a bearing to coincident positions", "a zero vector has no direction", _named("direction"), _coincident),
+    _Rule(
+        "a bearing to coincident positions",
+        "a zero vector has no direction",
+        _named("direction"),
+        _coincident,
+    ),
     _Rule(
         "rotation by 2 pi n, n >= 1",
         "Jr and Jl are singular",
@@ -202,10 +207,10 @@ _RULES: tuple[_Rule, ...] = (
         "not finite, or as large as the rounding of 2 pi makes it",
     ),
     _Rule(
-        "retract in a chart of quaternion vectors with |d| >= 2",
-        "no unit quaternion has a longer vector part, and half a turn, |d| = 2, has no Jacobian; near it "
-        "w = cos(angle/2) comes from 1 - |d|^2/4: the error is that of the stored d over w, of the Jacobian by d "
-        "over w^2, and within 1e-6 of half a turn no digits are left",
+        "retract by the vector part v of a quaternion (g2o: v = d) with |v| >= 1",
+        "no unit quaternion has a longer vector part, and half a turn, |v| = 1, has no Jacobian; near it "
+        "w = sqrt(1 - |v|^2) = cos(angle/2) has the error of the stored v over w, the Jacobian by d over "
+        "w^2, and within 1e-6 of w = 0 no digits are left",
         _vector_part,
         _long,
     ),

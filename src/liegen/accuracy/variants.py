@@ -13,6 +13,8 @@ from liegen.manifolds.form import RotationForm
 from liegen.trace import Graph
 from liegen.verify.draws import AnyFunction
 
+SAME = "presets make no difference: each of its charts is the only one of its manifold"
+
 
 @dataclass(frozen=True)
 class Variant:
@@ -34,7 +36,7 @@ class Remark:
 def variants(
     functions: Sequence[AnyFunction], presets: Iterable[str]
 ) -> tuple[tuple[Variant, ...], tuple[Remark, ...]]:
-    """Every function in every chart that differs for it, and where presets make no difference or do not exist."""
+    """Every function in each chart that differs for it; where presets make no difference or do not exist."""
     found: list[Variant] = []
     remarks: list[Remark] = []
     names = tuple(presets)
@@ -59,13 +61,8 @@ def _of_function(function: AnyFunction, names: tuple[str, ...]) -> tuple[list[Va
             missing.append(Remark(function.name, (name,), f"has no such chart: {error}"))
     found = [Variant(f, tuple(presets)) for f, presets in charted.values()]
     if not _charted(function.graph):
-        missing.append(Remark(function.name, names, _same(function.graph)))
+        missing.append(Remark(function.name, names, SAME))
     return found, missing
-
-
-def _same(graph: Graph) -> str:
-    forms = sorted({n.manifold.form.name for n in graph.nodes() if n.manifold.form.dim})
-    return f"presets make no difference: no other chart of {', '.join(forms)} is defined"
 
 
 def _charted(graph: Graph) -> bool:

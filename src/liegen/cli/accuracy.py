@@ -99,8 +99,8 @@ def print_report(report: AccuracyReport) -> None:
     click.echo()
     _print_excesses(report)
     click.echo("Points where no value is defined, and what the code gives there:")
-    for point in report.undefined:
-        click.echo(f"- {_point(point)}")
+    for line in _points(report.undefined):
+        click.echo(f"- {line}")
     for line in _remarks(report):
         click.echo(line)
     every = [f for row in report.rows for f in row.measured.figures]
@@ -153,8 +153,13 @@ def _print_excesses(report: AccuracyReport) -> None:
         click.echo()
 
 
-def _point(point: Undefined) -> str:
-    return f"{point.where}: {point.reason}; the code gives: {point.returns} ({_some(point.functions)})"
+def _points(points: Sequence[Undefined]) -> Iterable[str]:
+    """Each point once, with what the code gives for whom."""
+    places: dict[tuple[str, str], list[str]] = {}
+    for p in points:
+        places.setdefault((p.where, p.reason), []).append(f"{p.returns} ({_some(p.functions)})")
+    for (where, reason), returns in places.items():
+        yield f"{where}: {reason}; the code gives: {'; '.join(returns)}"
 
 
 def _some(names: Sequence[str]) -> str:
@@ -165,8 +170,8 @@ def _some(names: Sequence[str]) -> str:
 def _remarks(report: AccuracyReport) -> Iterable[str]:
     reasons: dict[str, list[str]] = {}
     for remark in report.remarks:
-        presets = "" if len(remark.presets) > 1 else f"{remark.presets[0]}: "
-        reasons.setdefault(presets + remark.reason, []).append(remark.function)
+        presets = "all presets" if len(remark.presets) > 1 else ", ".join(remark.presets)
+        reasons.setdefault(f"{presets}: {remark.reason}", []).append(remark.function)
     for reason, names in reasons.items():
         yield f"{_some(names)}: {reason}"
 

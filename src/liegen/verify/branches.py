@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ def both_branches(graph: Graph, sample: Sample, slopes: Slopes | None = None) ->
     Both are the same unless the last digits of the inputs decide which logarithm it is. ``slopes`` are the
     Jacobians, by default the derivatives of the outputs.
     """
-    jacobians = slopes or (lambda values, flip: _derivatives(graph, values, flip=flip))
+    jacobians = slopes or partial(_derivatives, graph)
     own, other = (_outputs(graph, sample.values, flip=flip) for flip in (False, True))
     principal = {**own, **jacobians(sample.values, False)}
     same = all(np.array_equal(own[name], x, equal_nan=True) for name, x in other.items())
@@ -69,7 +70,7 @@ def _outputs(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
     }
 
 
-def _derivatives(graph: Graph, values: Values, *, flip: bool) -> Entries:
+def _derivatives(graph: Graph, values: Values, flip: bool) -> Entries:
     jacobians: Any = reference.jacobians(graph, values, flip=flip)
     return {f"{name}_D_{variable}": np.array(flat(rows)) for (name, variable), rows in jacobians.items()}
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 import importlib.metadata
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+#: Places in an array.
+Order = NDArray[np.intp]
 #: From the arguments of one sample to the blocks that the library offers, by liegen's names.
 Evaluate = Callable[[Mapping[str, Array]], Mapping[str, Array]]
 
@@ -34,6 +37,16 @@ class Peer:
     version: str
     note: str
     operations: tuple[Operation, ...]
+
+
+def doubles(value: Any) -> Array:
+    """A result of a library as an array of its own."""
+    return np.array(value, dtype=np.float64)
+
+
+def vector(value: Any) -> Array:
+    """The same with one axis."""
+    return doubles(value).reshape(-1)
 
 
 def version_of(distribution: str) -> str:

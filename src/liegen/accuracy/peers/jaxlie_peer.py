@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from .contract import SWAPPED, Array, Evaluate, Operation, Peer, version_of
+from .contract import SWAPPED, Array, Evaluate, Operation, Order, Peer, doubles, version_of
 
 
 def load() -> Peer:
@@ -29,9 +29,9 @@ def load() -> Peer:
 
 
 def _operations(
-    jax: Any, manifold: Any, group: Any, name: str, stored: Array, order: Array
+    jax: Any, manifold: Any, group: Any, name: str, stored: Order, order: Order
 ) -> list[Operation]:
-    """``stored`` and ``order`` take liegen's storage and tangent to jaxlie's; tangents are swapped back alike."""
+    """``stored`` and ``order`` take liegen's storage and tangent to jaxlie's; both orders are swaps."""
     zero = np.zeros(group.tangent_dim)
 
     def residual(x: Any, y: Any, z: Any, d: Any, e: Any) -> Any:
@@ -42,17 +42,32 @@ def _operations(
     def moved(d: Any, e: Any) -> Any:
         return manifold.rminus(group.exp(d), group.exp(d + e))
 
-    value = jax.jit(lambda x, y, z: residual(x, y, z, zero, zero))
+    def at_rest(x: Any, y: Any, z: Any) -> Any:
+        return residual(x, y, z, zero, zero)
+
+    def logarithm_of(x: Any) -> Any:
+        return group(x).log()
+
+    def slope_of(x: Any) -> Any:
+        return group(x).jlog()
+
+    def stored_exponential(d: Any) -> Any:
+        return group.exp(d).parameters()
+
+    def inverse_at(d: Any) -> Any:
+        return group.exp(d).jlog()
+
+    value = jax.jit(at_rest)
     slopes = jax.jit(jax.jacfwd(residual, argnums=(3, 4)))
-    log, jlog = jax.jit(lambda x: group(x).log()), jax.jit(lambda x: group(x).jlog())
-    exp, slope = jax.jit(lambda d: group.exp(d).parameters()), jax.jit(jax.jacfwd(moved, argnums=1))
-    inverse = jax.jit(lambda d: group.exp(d).jlog())
+    log, jlog = jax.jit(logarithm_of), jax.jit(slope_of)
+    exp, slope = jax.jit(stored_exponential), jax.jit(jax.jacfwd(moved, argnums=1))
+    inverse = jax.jit(inverse_at)
 
     def tangent(v: Any) -> Array:
-        return np.asarray(v)[order]
+        return doubles(v)[order]
 
     def both(J: Any) -> Array:
-        return np.asarray(J)[np.ix_(order, order)]
+        return doubles(J)[np.ix_(order, order)]
 
     def between(a: Mapping[str, Array]) -> Mapping[str, Array]:
         xyz = [a[n][stored] for n in ("x", "y", "z")]
@@ -66,21 +81,16 @@ def _operations(
     def exponential(a: Mapping[str, Array]) -> Mapping[str, Array]:
         d = a["d"][order]
         coords = np.empty(len(stored))
-        coords[stored] = np.asarray(exp(d))
+        coords[stored] = doubles(exp(d))
         return {"out": coords, "out_D_d": both(slope(d, zero))}
 
     def inverse_jacobian(a: Mapping[str, Array]) -> Mapping[str, Array]:
         return {"out": both(inverse(a["d"][order]))}
 
-    rules: dict[str, Callable[..., Any]] = {
+    rules: dict[str, Evaluate] = {
         f"between_{name}": between,
         f"{name}_log": logarithm,
         f"{name}_exp": exponential,
         f"{name}_Jr_inv": inverse_jacobian,
     }
-    return [Operation(function, "gtsam", _checked(rule)) for function, rule in rules.items()]
-
-
-def _checked(rule: Evaluate) -> Evaluate:
-    """With writable double-precision copies."""
-    return lambda a: {name: np.array(v, dtype=np.float64) for name, v in rule(a).items()}
+    return [Operation(function, "gtsam", rule) for function, rule in rules.items()]

@@ -8,7 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from .contract import SWAPPED, Array, Evaluate, Operation, Peer, quaternion, rotation_matrix, version_of
+from .contract import (
+    SWAPPED,
+    Array,
+    Evaluate,
+    Operation,
+    Order,
+    Peer,
+    doubles,
+    quaternion,
+    rotation_matrix,
+    vector,
+    version_of,
+)
 
 
 def load() -> Peer:
@@ -28,17 +40,17 @@ def load() -> Peer:
 
 
 def _operations(
-    group: Any, name: str, make: Callable[[Array], Array], back: Callable[[Array], Array], order: Array
+    group: Any, name: str, make: Callable[[Array], Array], back: Callable[[Array], Array], order: Order
 ) -> list[Operation]:
     def between(a: Mapping[str, Array]) -> Mapping[str, Array]:
         x, y, z = (group(make(a[n])) for n in ("x", "y", "z"))
-        return {"res": np.ravel((z.inverse() * (x.inverse() * y)).log())[order]}
+        return {"res": vector((z.inverse() * (x.inverse() * y)).log())[order]}
 
     def log(a: Mapping[str, Array]) -> Mapping[str, Array]:
-        return {"out": np.ravel(group(make(a["x"])).log())[order]}
+        return {"out": vector(group(make(a["x"])).log())[order]}
 
     def exp(a: Mapping[str, Array]) -> Mapping[str, Array]:
-        return {"out": back(np.asarray(group.exp(a["d"][order]).matrix()))}
+        return {"out": back(doubles(group.exp(a["d"][order]).matrix()))}
 
     rules: dict[str, Evaluate] = {f"between_{name}": between, f"{name}_log": log, f"{name}_exp": exp}
     return [Operation(function, "gtsam", rule) for function, rule in rules.items()]

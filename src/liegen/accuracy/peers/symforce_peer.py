@@ -7,9 +7,7 @@ import tempfile
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import numpy as np
-
-from .contract import Array, Evaluate, Operation, Peer, version_of
+from .contract import Array, Evaluate, Operation, Peer, doubles, vector, version_of
 
 
 def load() -> Peer:
@@ -68,7 +66,7 @@ def _between(function: Callable[..., Any], group: Any, epsilon: float) -> Evalua
     def evaluate(a: Mapping[str, Array]) -> Mapping[str, Array]:
         x, y, z = (group.from_storage(a[n].tolist()) for n in ("x", "y", "z"))
         res, by_x, by_y = function(x, y, z, epsilon)
-        return {"res": np.ravel(res), "res_D_x": np.asarray(by_x), "res_D_y": np.asarray(by_y)}
+        return {"res": vector(res), "res_D_x": doubles(by_x), "res_D_y": doubles(by_y)}
 
     return evaluate
 
@@ -76,10 +74,10 @@ def _between(function: Callable[..., Any], group: Any, epsilon: float) -> Evalua
 def _log(function: Callable[..., Any], group: Any, epsilon: float) -> Evaluate:
     def evaluate(a: Mapping[str, Array]) -> Mapping[str, Array]:
         value, slope = function(group.from_storage(a["x"].tolist()), epsilon)
-        return {"out": np.ravel(value), "out_D_x": np.asarray(slope)}
+        return {"out": vector(value), "out_D_x": doubles(slope)}
 
     return evaluate
 
 
 def _exp(group: Any, epsilon: float) -> Evaluate:
-    return lambda a: {"out": np.array(group.from_tangent(a["d"], epsilon).to_storage())}
+    return lambda a: {"out": doubles(group.from_tangent(a["d"], epsilon).to_storage())}
