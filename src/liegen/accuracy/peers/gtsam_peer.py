@@ -38,13 +38,14 @@ def _derivatives(group: Any, name: str) -> list[Operation]:
     return [
         Operation(f"{name}_{ours}", "gtsam", _of_vector(method))
         for ours, method in present.items()
-        if method and _takes_vector(method, 6 if name == "se3" else 3)
+        if method and _takes(method, np.zeros(6 if name == "se3" else 3))
     ]
 
 
-def _takes_vector(method: Callable[[Array], Array], size: int) -> bool:
+def _takes(method: Callable[..., Any], *arguments: Any) -> bool:
+    """Versions differ in what their Python wrappers accept."""
     try:
-        method(np.zeros(size))
+        method(*arguments)
     except TypeError:
         return False
     return True
@@ -60,13 +61,14 @@ def _with_jacobian(
     back: Callable[[Any], Array],
     argument: str,
 ) -> Evaluate:
-    """``function(x, H)`` fills H."""
+    """``function(x, H)`` fills H, where the wrapper has it."""
 
     def evaluate(a: Mapping[str, Array]) -> Mapping[str, Array]:
         n = 6 if len(a[argument]) > 4 else 3
-        H = np.zeros((n, n), order="F")
-        value = function(make(a[argument]), H)
-        return {"out": back(value), f"out_D_{argument}": H}
+        element, H = make(a[argument]), np.zeros((n, n), order="F")
+        if not _takes(function, element, H):
+            return {"out": back(function(element))}
+        return {"out": back(function(element, H)), f"out_D_{argument}": H}
 
     return evaluate
 
