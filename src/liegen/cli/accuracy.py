@@ -44,7 +44,7 @@ def run_accuracy(
     from liegen.accuracy import SAMPLES, accuracy
     from liegen.accuracy.peers import measure_peers
 
-    everything = source is None and not groups
+    everything = source is None and not groups and noise is None
     functions = weighed(_chosen(source, names, groups, everything=everything), noise, None, None)
     reload = partial(_reload, source, tuple(groups), noise, everything=everything)
     with bar("accuracy", "measured chart") as told:

@@ -54,14 +54,10 @@ def _operations(
     def stored_exponential(d: Any) -> Any:
         return group.exp(d).parameters()
 
-    def inverse_at(d: Any) -> Any:
-        return group.exp(d).jlog()
-
     value = jax.jit(at_rest)
     slopes = jax.jit(jax.jacfwd(residual, argnums=(3, 4)))
     log, jlog = jax.jit(logarithm_of), jax.jit(slope_of)
     exp, slope = jax.jit(stored_exponential), jax.jit(jax.jacfwd(moved, argnums=1))
-    inverse = jax.jit(inverse_at)
 
     def tangent(v: Any) -> Array:
         return doubles(v)[order]
@@ -84,13 +80,9 @@ def _operations(
         coords[stored] = doubles(exp(d))
         return {"out": coords, "out_D_d": both(slope(d, zero))}
 
-    def inverse_jacobian(a: Mapping[str, Array]) -> Mapping[str, Array]:
-        return {"out": both(inverse(a["d"][order]))}
-
     rules: dict[str, Evaluate] = {
         f"between_{name}": between,
         f"{name}_log": logarithm,
         f"{name}_exp": exponential,
-        f"{name}_Jr_inv": inverse_jacobian,
     }
     return [Operation(function, "gtsam", rule) for function, rule in rules.items()]
