@@ -28,6 +28,12 @@ def test_verify_reports_the_gradient():
     done = run("verify", "-f", "prior_so2", "--noise", "isotropic", "--loss", "cauchy", "--samples", "8")
     assert done.exit_code == 0, done.output
     assert "does not apply: Jacobians of mode irls" in done.output
+    title, row = done.output.splitlines()[:2]
+    columns = {name: title.index(name) + len(name) for name in ("Jacobian", "gradient", "differences")}
+    figures = {name: row[:end].split()[-1] for name, end in columns.items()}
+    assert 0 < float(figures["gradient"]) < 1e-12
+    assert 0 < float(figures["Jacobian"]) < 1e-12
+    assert row[columns["gradient"] : columns["differences"]].strip() == ""
 
 
 def test_unknown_names_list_those_that_exist(tmp_path: Path):

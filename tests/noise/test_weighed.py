@@ -14,6 +14,7 @@ from liegen import R1, R3, R9, DefinitionError, factor, function
 from liegen.emit import render
 from liegen.library import between_se2, between_se3, prior_r3
 from liegen.noise import LOSSES, MODES, NOISES
+from liegen.program.rewrite import Builder
 from liegen.verify import verify
 from liegen.verify.backends import load_package
 from liegen.verify.mutate import mutants
@@ -151,6 +152,8 @@ def test_robust_factors_pass_and_say_what_does_not_apply(loss, mode):
     checks = {c.name: c for c in report.checks}
     assert checks["gradient"].checked
     assert checks["gradient"].kept >= 10
+    assert checks["Jacobian"].checked
+    assert checks["Jacobian"].kept >= 10
     assert "does not apply" in checks["differences"].note
 
 
@@ -163,6 +166,28 @@ def test_the_gradient_check_can_fail():
         (report,) = verify([broken], samples=6).factors
         total, caught = total + 1, caught + (not report.passed)
     assert caught >= 0.9 * total
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_jacobian_is_held_against_its_definition(mode):
+    """A column moved across the residual leaves J^T r as it is."""
+    made = prior_r3.whitened("full", "cauchy", mode)
+    program = made.kernel.jacobians
+    builder = Builder()
+    builder.code.extend(program.code)
+    res, J = program.results
+    moved = list(J)
+    size = builder.const(1e-6)
+    moved[0] = builder.emit("sub", (J[0], builder.emit("mul", (size, res[1]))))
+    moved[3] = builder.emit("add", (J[3], builder.emit("mul", (size, res[0]))))
+    wrong = replace(program, code=tuple(builder.code), results=(res, tuple(moved)))
+    broken = prior_r3.whitened("full", "cauchy", mode, name="broken")
+    broken.__dict__["kernel"] = replace(made.kernel, name="broken", jacobians=wrong)
+    for weighed, right in ((made, True), (broken, False)):
+        (report,) = verify([weighed], samples=6).factors
+        checks = {c.name: c.passed for c in report.checks}
+        assert checks["gradient"]
+        assert checks["Jacobian"] is right
 
 
 def test_header_and_explain_say_noise_loss_mode_and_frame():

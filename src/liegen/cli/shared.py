@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -159,6 +160,21 @@ def tracked(items: Sequence[T], what: str, label: Callable[[T], str]) -> Iterato
             bar.update(task, description=f"{what} {label(item)}")
             yield item
             bar.advance(task)
+
+
+@contextmanager
+def bar(title: str, verb: str) -> Generator[Callable[[str, int, int], None] | None]:
+    """Tells what is done, how much of it, of how much, while standard error is a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with progress() as shown:
+        task = shown.add_task(title, total=None)
+
+        def told(what: str, done: int, total: int) -> None:
+            shown.update(task, completed=done, total=total, description=f"{verb} {what}")
+
+        yield told
 
 
 def progress() -> Any:

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Generator, Iterable
-from contextlib import contextmanager
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
+from .accuracy import run_accuracy
 from .shared import (
     Convention,
+    bar,
     chosen,
     convention_options,
     count,
     groups_option,
     names_option,
     noise_options,
-    progress,
     source_argument,
     table,
     weighed,
@@ -30,7 +29,13 @@ if TYPE_CHECKING:
     from liegen.verify import Check, FactorReport, Report
 
 #: Checks whose worst figure has a column: relative errors, and the slope of the remainder (2 is right).
-MEASURED = {"value": "value", "Jacobian": "Jacobian", "differences": "differences", "Taylor": "slope"}
+MEASURED = {
+    "value": "value",
+    "Jacobian": "Jacobian",
+    "gradient": "gradient",
+    "differences": "differences",
+    "Taylor": "slope",
+}
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
 #: Skipped cases that are named for a factor.
@@ -47,6 +52,10 @@ LISTED = 6
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
 @convention_options
+@click.option("--accuracy", is_flag=True, help="The worst errors by rotation angle, in every chart; without"
+    " SOURCE and --group of the library and all groups. --samples are those of an angle.")  # fmt: skip
+@click.option("--peers", is_flag=True, help="With --accuracy: the same of GTSAM, SymForce, jaxlie and Sophus,"
+    " where they are installed.")  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def verify(
     source: str | None,
@@ -60,21 +69,32 @@ def verify(
     mode: str | None,
     samples: int | None,
     seed: int,
+    accuracy: bool,
+    peers: bool,
     as_json: bool,
 ) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
+    if peers and not accuracy:
+        raise click.UsageError("--peers is a part of --accuracy; give both")
+    if accuracy:
+        if loss or mode:
+            raise click.UsageError("--accuracy is of factors without a loss")
+        run_accuracy(
+            source, names, groups, chart, noise, samples=samples, seed=seed, peers=peers, as_json=as_json
+        )
+        return
     from liegen.verify import verify as run
     from liegen.verify.run import SAMPLES
 
     convention = Convention(chart, layout, normalise)
     functions = weighed(chosen(source, names, groups, convention), noise, loss, mode)
     started = time.monotonic()
-    with _shown(len(functions)) as told:
+    with bar("verify", "verified") as told:
         report = run(
             functions,
             samples=samples or SAMPLES,
             seed=seed,
-            progress=told,
+            progress=(lambda f, done, total: told(f.factor, done, total)) if told else None,
             reload=partial(weighed_by_name, source, groups, convention, noise, loss, mode),
         )
     if as_json:
@@ -83,21 +103,6 @@ def verify(
         _print(report, time.monotonic() - started)
     if not report.passed:
         raise click.exceptions.Exit(1)
-
-
-@contextmanager
-def _shown(factors: int) -> Generator[Callable[[FactorReport, int, int], None] | None]:
-    """A progress bar while standard error is a terminal."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    with progress() as bar:
-        task = bar.add_task("verify", total=factors)
-
-        def told(report: FactorReport, done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, description=f"verified {report.factor}")
-
-        yield told
 
 
 def _print(report: Report, seconds: float) -> None:
@@ -162,8 +167,8 @@ def _remarks(factor: FactorReport) -> Iterable[str]:
                 f"\n{factor.factor}: {check.name} failed: {check.worst:.3g} {check.unit} where "
                 f"{check.bound:.3g} is allowed, at: {check.where or 'no sample'}{note}"
             )
-        elif check.name == "Jacobian" and not check.checked:
-            yield f"{factor.factor}: Jacobian, differences, Taylor: {check.note}"
+        elif check.name == "differences" and not check.checked:
+            yield f"{factor.factor}: differences, Taylor: {check.note}"
         elif check.note not in ("", EVERYWHERE) and check.checked:
             yield f"{factor.factor}: {check.name}: {check.note}"
 

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .expected import BOUND, EPS, Comparison, Expected, compare
+from .branches import EPS
+from .expected import BOUND, Comparison, Expected, compare
 from .report import Check
 
 Array = NDArray[np.float64]

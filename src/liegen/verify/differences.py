@@ -18,8 +18,8 @@ from liegen.trace import Graph, Parameter
 
 from . import reference
 from .backends import Evaluate
+from .branches import EPS
 from .draws import Sample, Values
-from .expected import EPS
 from .report import Check
 
 Array = NDArray[np.float64]

@@ -88,11 +88,12 @@ def draw_samples(function: AnyFunction, count: int, seed: int, inside: Inside | 
 
 def draw_one(function: AnyFunction, draw: Draw, case: Case) -> Sample:
     """One sample, inside the domain or not."""
-    values = negated(_sampler(function)(draw, case), draw, always=case.negate)
+    values = negated(sampler_of(function)(draw, case), draw, always=case.negate)
     return Sample(case.name, stored(function, values), case.apart)
 
 
-def _sampler(function: AnyFunction) -> Sampler:
+def sampler_of(function: AnyFunction) -> Sampler:
+    """The sampler of a factor, with numbers for what noise and loss add."""
     manifolds: dict[str, Any] = {p.name: p.manifold for p in function.plain.parameters}
     own = function.sampler or default_sampler(manifolds)
     weighting = function.weighting

@@ -9,19 +9,19 @@ makes in their program.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from liegen.layouts import storage
-from liegen.trace import Graph
 
-from . import reference
-from .draws import AnyFunction, Sample, Values, batch, generator_for
+from .branches import both_branches
+from .draws import AnyFunction, Sample, batch
 from .rounding import rounding
+from .sphere_slack import slack_of
+from .weighed import defined_slopes
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,6 @@ BOUND = 2e-14
 RESIDUAL = "res"
 #: Nearer to the antipode than this a direction on S2 has no useful tangent [rad].
 ANTIPODE = 0.99e-6
-EPS = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +64,18 @@ class Expected:
 
 
 def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: bool) -> Expected:
-    """Evaluate the reference. ``conditioned`` allows for the rounding in the program too."""
+    """Evaluate the reference. ``conditioned`` allows for the rounding in the program too.
+
+    So do Jacobians of factors with a loss, which are those that the loss defines.
+    """
     graph = function.graph
-    slack = np.array([_slack(graph, s.values) for s in samples])
-    branches = [_both_branches(graph, s) for s in samples]
+    slack = np.array([slack_of(graph, s.values) for s in samples])
+    slack[slack * ANTIPODE >= 1] = np.inf
+    robust = function.weighting is not None and function.weighting.loss is not None
+    slopes = defined_slopes(function) if robust else None
+    branches = [both_branches(graph, s, slopes) for s in samples]
     rough = np.array([conditioned or s.conditioned for s in samples])
-    allowed = rounding(function.kernel.jacobians, batch(tuple(samples))) if rough.any() else {}
+    allowed = rounding(function.kernel.jacobians, batch(tuple(samples))) if rough.any() or robust else {}
     # the shape of a loss may be infinite
     inputs = np.array([max(abs(x) for v in s.values.values() for x in v if np.isfinite(x)) for s in samples])
     blocks: list[Block] = []
@@ -81,7 +86,7 @@ def expect(function: AnyFunction, samples: Sequence[Sample], *, conditioned: boo
         size = np.abs(stacked).max(axis=2)
         if is_value and not is_matrix:
             size = inputs if name == RESIDUAL else np.maximum(inputs, size)
-        extra = np.where(rough, allowed.get(name, 0.0), 0.0)
+        extra = np.where(rough | (robust and not is_value), allowed.get(name, 0.0), 0.0)
         plain = BOUND * np.maximum(1.0, size)
         bound = np.broadcast_to((plain + extra) * slack, (2, len(samples)))
         lost = extra / np.broadcast_to(plain, bound.shape).min(axis=0)
@@ -102,82 +107,6 @@ def _reasons(samples: Sequence[Sample], slack: Array, blocks: Sequence[Block]) -
             names = [block.name for block in blocks if not block.kept[k]]
             reasons.append(f"{sample.case}: reference not finite in {', '.join(names)}")
     return tuple(reasons)
-
-
-Entries = Mapping[str, Array]
-
-
-def _both_branches(graph: Graph, sample: Sample) -> tuple[Entries, Entries]:
-    """Flat entries of all outputs and Jacobians; the second time with the other logarithm at a half turn.
-
-    Both are the same unless the last digits of the inputs decide which logarithm it is.
-    """
-    principal = _entries(graph, sample.values, flip=False)
-    other = _outputs(graph, sample.values, flip=True)
-    same = all(np.array_equal(principal[name], x, equal_nan=True) for name, x in other.items())
-    if same or not _undecided(graph, sample, principal, other):
-        return principal, principal
-    return principal, _entries(graph, sample.values, flip=True)
-
-
-def _undecided(graph: Graph, sample: Sample, principal: Entries, other: Entries) -> bool:
-    """Whether the principal logarithm of some nearby inputs is nearer to ``other``."""
-    for near in _nearby(graph, sample):
-        for name, x in _outputs(graph, near, flip=False).items():
-            apart = [float(np.abs(x - side[name]).max()) for side in (principal, other)]
-            if apart[1] < apart[0]:
-                return True
-    return False
-
-
-def _nearby(graph: Graph, sample: Sample) -> Iterator[Values]:
-    """The inputs with every number moved by 16 units in the last place, one way or the other."""
-    generator = generator_for(graph.name, sample.case, "nearby")
-    for _ in range(16):
-        yield {
-            name: tuple(
-                x * (1 + 16 * EPS * s) for x, s in zip(v, generator.choice([-1.0, 1.0], len(v)), strict=True)
-            )
-            for name, v in sample.values.items()
-        }
-
-
-def _outputs(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
-    elements = reference.outputs(graph, values, flip=flip)
-    return {
-        name: np.array(
-            reference.to_coords(node.manifold, elements[name], layout=graph.layout), dtype=np.float64
-        )
-        for name, node in graph.outputs
-    }
-
-
-def _entries(graph: Graph, values: Values, *, flip: bool) -> dict[str, Array]:
-    entries = _outputs(graph, values, flip=flip)
-    jacobians: Any = reference.jacobians(graph, values, flip=flip)
-    for name, _ in graph.outputs:
-        for p in graph.parameters:
-            if p.variable:
-                rows = jacobians[name, p.name]
-                entries[f"{name}_D_{p.name}"] = np.array([float(x) for row in rows for x in row])
-    return entries
-
-
-def _slack(graph: Graph, values: Values) -> float:
-    """1/sine of the largest angle beyond a quarter turn between directions; infinite at the antipode."""
-    worst = 1.0
-    logs = [
-        n for n in graph.nodes() if n.operation.name == "local" and n.operands[0].manifold.form.name == "S2"
-    ]
-    if not logs:
-        return worst
-    evaluation = reference.evaluate(graph, values)
-    for node in logs:
-        x, y = (np.array([float(c) for c in evaluation[n]]) for n in node.operands)
-        sine, cosine = float(np.linalg.norm(np.cross(x, y))), float(x @ y)
-        if cosine < 0:
-            worst = max(worst, 1 / sine if sine > ANTIPODE else np.inf)
-    return worst
 
 
 @dataclass(frozen=True, eq=False)

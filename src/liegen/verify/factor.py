@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,20 +47,17 @@ def _checks(
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
     weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
-    if weighting:
-        expected = replace(expected, blocks=tuple(b for b in expected.blocks if b.is_value))
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
     if weighting:
         branches = compare(expected, results[TAKEN])[0].branch.tolist()
-        value, _ = accuracy(expected, results, drawn.refused)
         return (
-            value,
+            *accuracy(expected, results, drawn.refused),
             gradient(function, weighting, drawn.inside, results, branches),
             agreement(expected, results | singles),
             domain(function, drawn, computed, seed),
-            *(not_applicable(name, weighting.mode.name) for name in ("Jacobian", "differences", "Taylor")),
+            *(not_applicable(name, weighting.mode.name) for name in ("differences", "Taylor")),
             _compiled(place),
         )
     return (

@@ -2,7 +2,7 @@
 
 The gradient is that of the cost in the reference, by differences in high precision. A Jacobian of iteratively
 reweighted or corrected least squares is no derivative of its residual, so the checks by differences and
-remainders do not apply.
+remainders do not apply; :mod:`liegen.verify.weighed` has its definition.
 """
 
 from __future__ import annotations

@@ -62,7 +62,7 @@ def verify(
     builtin = all(known.get(f.name) is f for f in functions)
     source: Reload | None = everything if builtin and reload is None else reload
     strict = {f.name for f in functions if known.get(f.name) is f}
-    count = min(workers or _cores(), len(functions) // WORTHWHILE) if source else 1
+    count = min(workers or cores(), len(functions) // WORTHWHILE) if source else 1
     with workspace([f.kernel for f in functions]) as place:
         jobs = [(f.name, samples, seed, f.name not in strict) for f in functions]
         found = (
@@ -109,6 +109,7 @@ def _work(source: Reload, place: Workspace, job: Job) -> FactorReport:
     return check_factor(source()[name], place, samples, seed, conditioned=conditioned)
 
 
-def _cores() -> int:
+def cores() -> int:
+    """How many processes this one may use at once."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity else os.cpu_count() or 1

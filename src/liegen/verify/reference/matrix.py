@@ -96,7 +96,7 @@ def expm(a: Matrix) -> Matrix:
     return _expm(a, mp.prec)
 
 
-@lru_cache(maxsize=256)  # differences take the same steps again and again
+@lru_cache(maxsize=4096)  # differences take the same steps again and again
 def _expm(a: Matrix, _precision: int) -> Matrix:
     size = magnitude(a)
     if not all(mp.isfinite(x) for row in a for x in row):

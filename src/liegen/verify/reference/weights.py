@@ -5,11 +5,12 @@ Slopes and curvatures of rho are central differences of it; nothing of ``liegen.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from .calls import Call, Rule
-from .matrix import Number, Vector, dot, matvec, mp, scale
+from .matrix import Matrix, Number, Vector, dot, matvec, mp, scale, sub, transpose
 
 #: 1 - alpha of Triggs' correction is not allowed below this.
 GAP = 64
@@ -69,21 +70,50 @@ def _cost(call: Call) -> Vector:
     return ((rho(s) if rho else s) / 2,)
 
 
-def _weighted(call: Call) -> Vector:
-    u, rho, size = _parts(call)
+@dataclass(frozen=True)
+class _Scaling:
+    """sqrt(rho'), and 1 - alpha of Triggs' correction: 1 where the mode has none."""
+
+    root: Number
+    gap: Number
+
+
+def _scaling(rho: Callable[[Number], Number] | None, s: Number, size: Number, mode: str) -> _Scaling:
     if rho is None:
-        return u
-    s = dot(u, u)
+        return _Scaling(mp.one, mp.one)
     h = (s + size) * mp.mpf(10) ** -25
     forth, here, back = rho(s + h), rho(s), rho(s - h)
     slope, curvature = (forth - back) / (2 * h), (forth - 2 * here + back) / h**2
     # flat to all digits
     root = mp.sqrt(slope) if slope > mp.mpf(10) ** -40 else mp.zero
-    if call.operation.parameters[2] == "irls" or not root:
-        return scale(root, u)
+    if mode == "irls" or not root:
+        return _Scaling(root, mp.one)
     definite = mp.mpf(1) + 2 * s * curvature / slope
-    gap = max(mp.sqrt(max(definite, mp.zero)), mp.one / GAP)
-    return scale(root / gap, u)
+    return _Scaling(root, max(mp.sqrt(max(definite, mp.zero)), mp.one / GAP))
+
+
+def _weighted(call: Call) -> Vector:
+    u, rho, size = _parts(call)
+    scaling = _scaling(rho, dot(u, u), size, call.operation.parameters[2])
+    return scale(scaling.root / scaling.gap, u)
+
+
+def weighted_rows(call: Call, rows: Sequence[Vector]) -> Matrix:
+    """The Jacobian of a weighted residual by definition, from that of the residual itself.
+
+    sqrt(rho') S J, and with Triggs' correction sqrt(rho') (I - alpha u u^T / s) S J (Triggs et al. 1999,
+    eq. 11); no derivative of the weighted residual.
+    """
+    u, rho, size = _parts(call)
+    s = dot(u, u)
+    scaling = _scaling(rho, s, size, call.operation.parameters[2])
+    noise, stored = call.operation.parameters[0], call.values[1] if len(call.values) > 1 else ()
+    k = (1 - scaling.gap) / s if s else mp.zero
+    columns: list[Vector] = []
+    for column in transpose(tuple(map(tuple, rows))):
+        white = _white(noise, column, stored) if noise else column
+        columns.append(scale(scaling.root, sub(white, scale(k * dot(u, white), u))))
+    return transpose(tuple(columns))
 
 
 OPERATIONS: Mapping[str, Rule] = {"weighted": _weighted, "cost": _cost}
