@@ -24,6 +24,8 @@ from liegen.manifolds import (
     Gal3,
     NavState,
     Product,
+    Sim2,
+    Sim3,
 )
 
 
@@ -59,14 +61,16 @@ GROUPS[Gal3] = [
     *(unit(5, (k, c, 1)) for c in (4, 3) for k in range(3)),
     unit(5, (3, 4, 1)),
 ]
+GROUPS[Sim2] = [*GROUPS[SE2], unit(3, (0, 0, 1), (1, 1, 1))]
+GROUPS[Sim3] = [*GROUPS[SE3], unit(4, *((k, k, 1) for k in range(3)))]
 GROUPS[Posed] = [
     np.pad(E, (start, 11 - start - len(E)))
     for part, start in ((SE3, 0), (R3, 4), (R2, 8))
     for E in GROUPS[part]
 ]
 #: The tangent's rotation coordinates, and the number of stored numbers that make a unit rotation.
-SPINS = {SO2: ([0], 2), SE2: ([2], 2)}
-SPINS |= dict.fromkeys((SO3, SE3, SE23, NavState, Gal3, Posed), ([0, 1, 2], 4))
+SPINS = {SO2: ([0], 2), SE2: ([2], 2), Sim2: ([2], 2)}
+SPINS |= dict.fromkeys((SO3, SE3, SE23, NavState, Gal3, Sim3, Posed), ([0, 1, 2], 4))
 ANGLES = (0.0, 1e-160, 1e-12, 1e-6, 1e-3, 0.3, 1.0, 1.7320508, 2.9, np.pi - 1e-3, np.pi - 1e-9)
 
 group = pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)
