@@ -16,6 +16,7 @@ from liegen.manifolds import S2, SO2, Calibration, Manifold, Value, Vector
 from liegen.manifolds.node import here
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
+from liegen.manifolds.similarity import Similarity
 
 _TOKEN = re.compile("[A-Z][a-z0-9]*")
 _TOKENS = re.compile("(?:[A-Z][a-z0-9]*)+")
@@ -83,7 +84,7 @@ def print_name(stem: str, tokens: tuple[str, ...]) -> str:
 
 def is_map(manifold: type[Value]) -> bool:
     """Whether elements have two frames."""
-    return issubclass(manifold, Pose | Rotation | Calibration)
+    return issubclass(manifold, Pose | Rotation | Similarity | Calibration)
 
 
 def needed(manifold: type[Manifold]) -> tuple[int, ...]:

@@ -8,6 +8,7 @@ from typing import NoReturn
 from liegen.manifolds import S2, Calibration, Node, Vector
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
+from liegen.manifolds.similarity import Similarity
 
 from .frame_names import Kind, is_map
 from .frame_step import Step
@@ -270,7 +271,7 @@ _MAPS: Mapping[str, Rule] = {
     "compose": _compose, "inverse": _inverse, "between": _between, "local": _local, "retract": _retract,
     "exp": _exp, "log": _log, "rotation": _rotation, "translation": _translation, "pose": _pose,
     "transform_from": _transform_from, "transform_to": _transform_to, "rotate": _rotate,
-    "unrotate": _unrotate, "direction": _direction,
+    "unrotate": _unrotate, "direction": _direction, "similarity": _pose, "scale": _nothing,
 }  # fmt: skip
 _VECTORS: Mapping[str, Rule] = {
     "compose": _add, "inverse": _negative, "between": _reversed_sub, "local": _reversed_sub, "retract": _add,
@@ -287,9 +288,10 @@ _CAMERAS: Mapping[str, Rule] = {"distort": _distort, "uncalibrate": _uncalibrate
 def rule(node: Node) -> Rule:
     """The rule of a node's operation; operations without one tell nothing of frames."""
     name, result = node.operation.name, node.manifold
-    acts = name in ("exp", "pose", "direction") and not issubclass(result, Vector)
+    acts = name in ("exp", "pose", "similarity", "direction") and not issubclass(result, Vector)
     subject = result if acts else node.operands[0].manifold
-    families = ((S2, _DIRECTIONS), (Calibration, _CAMERAS), (Pose, _MAPS), (Rotation, _MAPS))
+    maps = Pose | Rotation | Similarity
+    families = ((S2, _DIRECTIONS), (Calibration, _CAMERAS), (maps, _MAPS))
     table = next((rules for base, rules in families if issubclass(subject, base)), _VECTORS)
     # R3.exp, the identity, is shown with its class; exp(v) of every entry is not
     if table is _VECTORS and name == "exp" and not node.operation.show.startswith("exp"):
