@@ -10,6 +10,7 @@ from liegen.errors import DefinitionError
 from liegen.manifolds import Calibration, Leaf, Manifold, Node, Value, Vector
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
+from liegen.manifolds.similarity import Similarity
 
 from .formulas import show
 from .frame_names import Declared, Kind, is_map, needed
@@ -140,7 +141,7 @@ def _route(
     """How a declared pose or rotation takes a vector from one frame to the other."""
     free = kind in (Kind.FREE, Kind.DIFFERENCE, Kind.TANGENT)
     for p in parameters:
-        pose, rotation = issubclass(p.manifold, Pose), issubclass(p.manifold, Rotation)
+        pose, rotation = issubclass(p.manifold, Pose | Similarity), issubclass(p.manifold, Rotation)
         form: Any = p.manifold.form
         space = form.rotation.space if pose else form.space if rotation else 0
         if p.frames is None or not issubclass(moved, Vector) or moved.form.dim != space:

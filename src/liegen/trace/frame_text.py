@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from liegen.manifolds import S2, SO2, Calibration, Leaf, Node
 from liegen.manifolds.pose import Pose
+from liegen.manifolds.similarity import Similarity
 
 from .frame_names import Kind, is_map
 from .frame_report import FrameReport
@@ -33,6 +34,8 @@ def _described(p: Parameter, names: tuple[str, ...], kind: Kind) -> str:
         return f"calibration, from {names[1]} to {names[0]}"
     if issubclass(p.manifold, Pose):
         return f"pose of {names[1]} in {names[0]}"
+    if issubclass(p.manifold, Similarity):
+        return f"similarity from {names[1]} to {names[0]}"
     if is_map(p.manifold):
         return f"rotation from {names[1]} to {names[0]}"
     if issubclass(p.manifold, S2):
