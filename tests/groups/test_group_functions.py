@@ -25,10 +25,12 @@ NAMES = list(groups())
 
 
 def random_element(group: str, rng) -> np.ndarray:
-    n = {"SO2": 2, "SE2": 2, "SO3": 4, "SE3": 4}[group]
+    n = {"SO2": 2, "SE2": 2, "Sim2": 2}.get(group, 4)
     unit = rng.normal(size=n)
     unit /= np.linalg.norm(unit)
-    return np.concatenate([unit, rng.normal(size={"SE2": 2, "SE3": 3}.get(group, 0))])
+    rest = rng.normal(size={"SE2": 2, "SE3": 3, "Sim2": 3, "Sim3": 4}.get(group, 0))
+    rest[-1:] = np.exp(rest[-1:]) if group.startswith("Sim") else rest[-1:]
+    return np.concatenate([unit, rest])
 
 
 @pytest.mark.parametrize("group", NAMES)
@@ -95,7 +97,7 @@ ANGLES = [0.0, 1e-320, 1e-160, 1e-12, 1e-8, 1e-3, 1.0, np.pi - 1e-8, np.pi, np.p
 ANGLES += [2 * np.pi - 1e-3, 2 * np.pi + 1e-3, 7.0, 3 * np.pi, 20.0, 100.0]
 
 
-@pytest.mark.parametrize("group", ["SO3", "SE2", "SE3"])
+@pytest.mark.parametrize("group", ["SO3", "SE2", "SE3", "Sim2", "Sim3"])
 @pytest.mark.parametrize("angle", ANGLES)
 def test_inverse_jacobians_at_any_tangent_vector(group, angle):
     """2e-14 max(1, s), and what four units in the last place of the angle change near a pole."""
