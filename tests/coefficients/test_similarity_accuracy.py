@@ -9,13 +9,21 @@ import numpy as np
 import pytest
 import similarity_reference as ref
 
-from liegen.coefficients import similarity, similarity_derivatives, similarity_inverse, tables
+from liegen.coefficients import (
+    similarity,
+    similarity_derivatives,
+    similarity_inverse,
+    similarity_logarithm,
+    tables,
+)
 
 mp = ref.mp
 RANDOM = np.random.default_rng(77)
 TINY = [0.0, 5e-324, 1e-320, 2.3e-308, 1e-300, 1e-200, 1e-162, 1e-160, 1e-155, 1e-100, 1e-30, 1e-17, 2.0**-30, 1e-9]
 END = tables.SIMILARITY_END
 BOUNDS = {name: 4 if name in ("A", "B", "C", "a") else 10 for name in ref.NAMES}
+#: F is a difference of two means, a fifth of each.
+LOGARITHM_BOUNDS = {"D": 6, "D0": 6, "K": 6, "T": 6, "C": 8, "G": 10, "H": 10, "F": 24}
 ANYWHERE = [n for n in ref.NAMES if n not in ("a", "b", "c")]
 
 
@@ -75,6 +83,24 @@ def test_scales_to_ten_to_the_thirteen():
         assert np.max(error) <= BOUNDS[name], name
 
 
+@pytest.mark.parametrize(("count", "largest"), [(60, 5.0), (60, 30.0), pytest.param(2_000, 30.0, marks=pytest.mark.slow)])
+def test_bounds_of_the_logarithm(count, largest):
+    """As above on [0, pi]; G changes its sign: its unit is that of F, of which it is half at lambda = 0."""
+    lam, theta = grid(np.pi, count)
+    lam = lam * (largest / 5.0)
+    s = theta * theta
+    with np.errstate(all="raise", under="ignore"):
+        found = dict(zip(ref.LOGARITHM, similarity_logarithm(lam, s), strict=True))
+    exact = [ref.logarithm(*x) for x in zip(lam, s, strict=True)]
+    scales = [ref.logarithm(x, 0.0) for x in lam]
+    for name in ref.LOGARITHM:
+        unit = [e["F" if name == "G" else name] for e in scales]
+        error = ref.in_units(found[name], [e[name] for e in exact], unit)
+        k = int(np.argmax(error))
+        print(f"{name}: {error[k]:.2f} at lambda {lam[k]:.3g}, theta {theta[k]:.3g}")
+        assert error[k] <= LOGARITHM_BOUNDS[name], (name, lam[k], theta[k])
+
+
 def test_limits_at_the_identity_are_exact():
     for lam in (0.0, 1e-320, 1e-200, -1e-160):
         for s in (0.0, 5e-324, 1e-320, 1e-200):
@@ -82,6 +108,8 @@ def test_limits_at_the_identity_are_exact():
             limits = (1, 1 / 2, 1 / 6, 1, 1 / 2, 1 / 12, 1 / 2, 1 / 6, 1 / 24, -1 / 12, -1 / 60)
             for name, limit in zip(ref.NAMES, limits, strict=True):
                 assert float(values[name]) == pytest.approx(limit, rel=4e-16, abs=0), (name, lam, s)
+            limits = (1 / 12, 1 / 12, 1 / 12, 1 / 6, 1 / 12, -1 / 720, 1 / 144, 1 / 720)
+            np.testing.assert_allclose(similarity_logarithm(lam, s), limits, rtol=1e-15)
 
 
 @pytest.mark.parametrize("digits", [15, 50])
@@ -98,6 +126,10 @@ def test_closed_forms_are_the_integrals(digits):
                 found = computed_exactly(mp.mpf(lam), mp.mpf(float(s)))
                 for name, value in found.items():
                     assert abs(value - exact[name]) <= 4 * mp.eps * abs(exact[name]), (name, lam, theta)
+                values = similarity_logarithm(mp.mpf(lam), mp.mpf(float(s)))
+                for name, value in zip(ref.LOGARITHM, values, strict=True):
+                    wanted = ref.logarithm(lam, float(s))[name]
+                    assert abs(value - wanted) <= 8 * mp.eps * abs(wanted), (name, lam, theta)
 
 
 def computed_exactly(lam, s):
@@ -114,15 +146,14 @@ def test_a_wrong_coefficient_is_seen():
 def test_on_arrays_and_sx_as_on_floats():
     lam, theta = grid(np.pi, 20)
     x, y = ca.SX.sym("lam"), ca.SX.sym("s")
-    f = ca.Function("f", [x, y], [ca.vertcat(*computed_sx(x, y))])
-    table = computed(lam, theta * theta)
+    f = ca.Function("f", [x, y], [ca.vertcat(*everything(x, y))])
+    table = everything(lam, theta * theta)
     for k in range(0, len(lam), 5):
         values = np.ravel(np.array(f(lam[k], theta[k] ** 2)))
-        single = computed(float(lam[k]), float(theta[k] ** 2))
-        for i, name in enumerate(ref.NAMES):
-            assert float(single[name]) == table[name][k]
-            assert values[i] == pytest.approx(float(single[name]), rel=1e-14)
+        for i, single in enumerate(everything(float(lam[k]), float(theta[k] ** 2))):
+            assert float(single) == table[i][k]
+            assert values[i] == pytest.approx(float(single), rel=1e-14)
 
 
-def computed_sx(lam, s):
-    return (*similarity(lam, s), *similarity_inverse(lam, s), *similarity_derivatives(lam, s))
+def everything(lam, s):
+    return (*similarity(lam, s), *similarity_inverse(lam, s), *similarity_derivatives(lam, s), *similarity_logarithm(lam, s))

@@ -96,3 +96,17 @@ def similarity_derivatives(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scal
         a, b, c, by_b, by_c = module.evaluate(module.similarity_derivative_forms(), lam, s)
         return a, b, c, by_b, by_c
     return similarity_doubles.similarity_derivatives(lam, s)
+
+
+def similarity_logarithm(lam: Scalar, s: Scalar) -> tuple[Scalar, ...]:
+    """``(D, D0, K, T, C, G, H, F)``, even in ``lam``, of k(z) = (z/2) coth(z/2) - 1: the Jacobians of log are made of it.
+
+    Jl^-1 = I - ad/2 + k(ad) and Jr^-1 = I + ad/2 + k(ad). With k0 = k(lam) and k1 = k(i theta): D = -k1/s,
+    D0 = k0/lam^2, K = (k0 - k1)/(lam^2 + s), T = Im k(z)/(lam theta), C = (k0 - Re k(z))/s,
+    G = (K - Re(k(z)/z)/lam)/(2 s), H = ((Re k(z) - k1)/lam^2 - K)/s, F = (D - D0)/(lam^2 + s).
+    ``lam = 0``: D, 1/12, D, 2 D + s E, D, -E/2, and so on, with (D, E) of ``inverse_jacobian``.
+    """
+    if algebra_of(lam, s).exact:
+        module = _similarity_forms()
+        return module.evaluate(module.similarity_logarithm_forms(), lam, s)
+    return similarity_doubles.similarity_logarithm(lam, s)

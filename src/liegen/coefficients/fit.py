@@ -164,6 +164,8 @@ def tables() -> dict[str, tuple[float, ...]]:
             "C4_5": correction(c4, STUMPFF5, 7),
             "C5_5": correction(c5, STUMPFF5, 7),
             "C6_5": correction(c6, STUMPFF5, 7),
+            "C5_H": correction(c5, 0.0, 8, low=-STUMPFF5),
+            "C6_H": correction(c6, 0.0, 8, low=-STUMPFF5),
             "P5": correction(forms.remainder_form(5), SIMILARITY, 16, low=-SIMILARITY),
             "INVERSE_Q": (*inverse_q, 1.0),
             "INVERSE_D": correction(d, INVERSE, 3, lambda x: horner((*inverse_q, 1), x)),

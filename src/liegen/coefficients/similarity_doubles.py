@@ -11,6 +11,7 @@ Errors are a few units of 2^-52 times the value at theta = 0, the largest for th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -120,3 +121,41 @@ def similarity_derivatives(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scal
     by_b = k.e * mean(2.0 * g4, c3 - 2.0 * c4 - lam * (c4 - 3.0 * c5))
     by_c = k.e * mean(2.0 * g5, c4 - 3.0 * c5 - lam * (c5 - 4.0 * c6))
     return k.e * k.d1, b2, c2, -by_b, -by_c
+
+
+def _hyperbolic(lam: Scalar) -> tuple[Scalar, ...]:
+    """c_2 to c_6 at -lambda^2, all terms positive: c_k = 1/k! + lambda^2 c_{k+2}."""
+    x = lam * lam
+    low = le(x, tables.STUMPFF5_END)
+    c6, c5 = horner(tables.C6_H, -x), horner(tables.C5_H, -x)
+    c4, c3 = 1.0 / 24.0 + x * c6, 1.0 / 6.0 + x * c5
+    c2 = 0.5 + x * c4
+    far = select(low, math.sqrt(tables.STUMPFF5_END), lam)
+    e = call("exp", lam)
+    back, r = 1.0 / e, 1.0 / far
+    r2 = r * r
+    h2 = (0.5 * (e + back) - 1.0) * r2
+    h3 = (0.5 * (e - back) * r - 1.0) * r2
+    h4, h5 = (h2 - 0.5) * r2, (h3 - 1.0 / 6.0) * r2
+    h6 = (h4 - 1.0 / 24.0) * r2
+    return tuple(select(low, u, v) for u, v in zip((c2, c3, c4, c5, c6), (h2, h3, h4, h5, h6), strict=True))
+
+
+def similarity_logarithm(lam: Scalar, s: Scalar) -> tuple[Scalar, ...]:
+    """(D, D0, K, T, C, G, H, F), even in lambda.
+
+    The differences of c_k(-lambda^2) and c_k(s) are (lambda^2 + s) times the mean of both c_{k+2}, which divides
+    every difference of the definitions out.
+    """
+    h2, h3, h4, h5, h6 = _hyperbolic(lam)
+    _, _, c2, c3, c4, c5 = stumpff(s, 5)
+    c6, mean = _sixth(s, c4), _weighing(lam, s)
+    u, half, half0 = c3 - 2.0 * c4, 0.5 / c2, 0.5 / h2
+    d, d0 = u * half, (h3 - 2.0 * h4) * half0
+    r = 1.0 / mean(2.0 * h2, 2.0 * c2)  # the mean is |2 sinh(z/2)/z|^2, 0 at the poles
+    m4, m6 = mean(h4, c4), mean(h6, c6)
+    f = (u * m4 - c2 * (mean(h5, c5) - 2.0 * m6)) * (2.0 * (half * half0))
+    k = d0 + s * f
+    kr = k * r
+    g = r * mean(m4 * (d - d0) - m6, -0.5 * (c5 - 4.0 * c6))
+    return d, d0, k, r * mean(h3, c3), 2.0 * (c2 * kr), g, 2.0 * (kr * m4), f

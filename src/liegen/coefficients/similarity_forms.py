@@ -54,6 +54,25 @@ def similarity_derivative_forms() -> Expressions:
 
 
 @cache
+def similarity_logarithm_forms() -> Expressions:
+    """(D, D0, K, T, C, G, H, F) of k(z) = (z/2) coth(z/2) - 1, of which the Jacobians of log are made.
+
+    With k0 = k(lambda), k1 = k(i theta): D = -k1/s, D0 = k0/lambda^2, K = (k0 - k1)/(lambda^2 + s), T = Im k(z) over
+    lambda theta, C = (k0 - Re k(z))/s, G = (K - Re(k(z)/z)/lambda)/(2 s), H = ((Re k(z) - k1)/lambda^2 - K)/s,
+    F = (D - D0)/(lambda^2 + s).
+    """
+    theta, size = sp.sqrt(S), LAMBDA**2 + S
+    base = 2 * (sp.cosh(LAMBDA) - sp.cos(theta))
+    real = (LAMBDA * sp.sinh(LAMBDA) + theta * sp.sin(theta)) / base - 1
+    t = (sp.sinh(LAMBDA) / LAMBDA - sp.sin(theta) / theta) / base
+    k0, k1 = LAMBDA / 2 * sp.coth(LAMBDA / 2) - 1, theta / 2 * sp.cot(theta / 2) - 1
+    k, d, d0 = (k0 - k1) / size, -k1 / S, k0 / LAMBDA**2
+    g = (k - (real + S * t) / size) / (2 * S)
+    h = ((real - k1) / LAMBDA**2 - k) / S
+    return d, d0, k, t, (k0 - real) / S, g, h, (d - d0) / size
+
+
+@cache
 def _compiled(forms: Expressions) -> Callable[[Any, Any], list[Any]]:
     return sp.lambdify((LAMBDA, S), list(forms), modules="mpmath", cse=True)
 

@@ -11,7 +11,12 @@ from collections.abc import Sequence
 
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Chain, Matrix, Vector, beside, column, eye, matvec, negate, stacked
-from liegen.coefficients import similarity, similarity_derivatives, similarity_inverse
+from liegen.coefficients import (
+    similarity,
+    similarity_derivatives,
+    similarity_inverse,
+    similarity_logarithm,
+)
 
 from .form import Coords, Source
 from .similarity_form import SimilarityForm
@@ -70,9 +75,21 @@ class Sim2Form(SimilarityForm):
         return negate(matvec(_complex(angle, a, b, c), d[:2]))
 
     def Jl_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
-        """[[1/phi_1, i phi_2/phi_1 rho, phi_2/phi_1 rho], [0, I]]."""
-        U = self._V_inv(d[2], d[3])
-        return _rows(U, negate(matvec(U, self._bend(d))))
+        """I - ad/2 + k(ad)."""
+        return self._inverse(d, -0.5)
+
+    def Jr_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
+        """I + ad/2 + k(ad): both inverses share k(ad)."""
+        return self._inverse(d, 0.5)
+
+    def _inverse(self, d: Coords, half: Scalar) -> Matrix:
+        """[[1 + half z + k(z), -(half + k(z)/z) rho], [0, I]] with k(z) = (z/2) coth(z/2) - 1."""
+        angle, lam = d[2:]
+        s = angle * angle
+        _, D0, K, T, C, G, _, _ = similarity_logarithm(lam, s)
+        linear = _complex(angle, 1 + half * lam + lam * lam * D0, half + lam * T, C)
+        slope = _complex(angle, half + lam * (K - 2 * s * G), T - K + 2 * s * G, 0)
+        return _rows(linear, negate(matvec(slope, d[:2])))
 
     def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
         turn = self.rotation.draw_tangent(source, angle, offset)

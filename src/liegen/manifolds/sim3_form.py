@@ -24,8 +24,6 @@ from liegen.algebra.linear import (
     dot,
     eye,
     matadd,
-    matmul,
-    matvec,
     negate,
     scale,
     skew,
@@ -34,7 +32,13 @@ from liegen.algebra.linear import (
     transpose,
     zeros,
 )
-from liegen.coefficients import inverse_jacobian, similarity, similarity_derivatives, similarity_inverse, stumpff
+from liegen.coefficients import (
+    similarity,
+    similarity_derivatives,
+    similarity_inverse,
+    similarity_logarithm,
+    stumpff,
+)
 
 from .form import Coords, Source
 from .similarity_form import SimilarityForm
@@ -129,15 +133,35 @@ class Sim3Form(SimilarityForm):
         return matadd(matadd(skew(w), diagonal((k, k, k))), outer)
 
     def Jl_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
-        """The inverse block by block: U = V^-1 and N = Jl^-1(phi), then -U bend N and U phi_2(lambda + W) rho."""
-        phi, lam = d[:3], d[6]
-        s = dot(phi, phi)
-        D, _ = inverse_jacobian(s, principal=principal)
-        N = series(phi, -0.5, D)
-        a, b, c = similarity_inverse(lam, s)
-        U = _polynomial(phi, a, -b, c)
-        bend = matmul(matmul(U, self._bend(d)), N)
-        return _rows(N, tuple(negate(row) for row in bend), U, matvec(U, self._drift(d)))
+        """I - ad/2 + k(ad)."""
+        return self._inverse(d, -0.5)
+
+    def Jr_inv(self, d: Coords, *, principal: bool = False) -> Matrix:
+        """I + ad/2 + k(ad): both inverses share k(ad)."""
+        return self._inverse(d, 0.5)
+
+    def _inverse(self, d: Coords, half: Scalar) -> Matrix:
+        """I + half ad + k(ad), ad = [[W, 0, 0], [P, lambda + W, -rho], [0, 0, 0]], k(z) = (z/2) coth(z/2) - 1.
+
+        k(ad) has k(W) and k(lambda + W) on its diagonal, -k(z)/z of lambda + W times rho at its right, and below
+        the divided differences of k at the eigenvalues lambda + w_i of one and w_j of the other block, w being
+        0, i theta, -i theta: of P's part along phi at (z, i theta), of the part across at (z, 0), (lambda, i theta).
+        """
+        phi, rho, lam = d[:3], d[3:6], d[6]
+        s, m = dot(phi, phi), dot(phi, rho)
+        D, D0, K, T, C, G, H, F = similarity_logarithm(lam, s)
+        across, sg = cross(phi, rho), s * G
+        skewed = add(scale(half + lam * (K - sg), rho), scale(lam * (H + G) * m, phi))
+        w = add(skewed, scale(T * 0.5 - K + sg, across))
+        # phi u^T + u phi^T, half of the term along phi in each
+        u = add(sub(scale(lam * G, across), scale(G * m, phi)), scale(T * 0.5 + sg, rho))
+        outer = matadd(tuple(scale(x, u) for x in phi), tuple(scale(x, phi) for x in u))
+        k = -(T * m)
+        bend = matadd(matadd(skew(w), diagonal((k, k, k))), outer)
+        linear = _polynomial(phi, 1 + half * lam + lam * lam * D0, half + lam * T, C)
+        moved = add(scale(half + lam * (K - 2 * sg), rho), scale(T - K + 2 * sg, across))
+        drift = negate(add(moved, scale(lam * (2 * G - F) * m, phi)))
+        return _rows(series(phi, half, D), bend, linear, drift)
 
     def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
         turn = self.rotation.draw_tangent(source, angle, offset)
