@@ -1,7 +1,8 @@
 """The coefficients of Sim(2) and Sim(3) at 60 digits from their integrals, term by term.
 
-phi_1(z) = int_0^1 e^(z t) dt, so each coefficient is an integral of e^(lambda t) t^m c_k(s t^2) over [0, 1], and its
-series in s has the integrals of e^(lambda t) t^n as terms: Kummer's function. Nothing here uses liegen.
+phi_1(z) = int_0^1 e^(z t) dt, so each coefficient is an integral of e^(lambda t) t^m c_k(s t^2) over [0, 1],
+and its series in s has the integrals of e^(lambda t) t^n as terms: Kummer's function. Nothing here uses
+liegen.
 """
 
 import numpy as np
@@ -37,7 +38,10 @@ def coefficients(lam, s):
     # (1/A - real/size)/s, multiplied out: no difference is left to divide
     inverse = 1 / A, B / size, (B**2 - C * real) / (A * size)
     second = A - power(1, lam), B - integral(2, 1, lam, s), C - integral(3, 2, lam, s)
-    slopes = integral(3, 3, lam, s) - integral(3, 2, lam, s), 2 * integral(4, 4, lam, s) - integral(4, 3, lam, s)
+    slopes = (
+        integral(3, 3, lam, s) - integral(3, 2, lam, s),
+        2 * integral(4, 4, lam, s) - integral(4, 3, lam, s),
+    )
     return dict(zip(NAMES, (A, B, C, *inverse, *second, *slopes), strict=True))
 
 
@@ -45,7 +49,7 @@ LOGARITHM = ("D", "D0", "K", "T", "C", "G", "H", "F")
 
 
 def logarithm(lam, s):
-    """The coefficients of k(ad): divided differences of k(z) = z/(e^z - 1) + z/2 - 1 at complex points, 300 digits.
+    """The coefficients of k(ad): divided differences of k(z) = z/(e^z - 1) + z/2 - 1 in 300 digits.
 
     Closer to 0 than 1e-30 nothing changes in 50 digits: the functions are even and entire there.
     """
@@ -63,12 +67,24 @@ def logarithm(lam, s):
         alpha = (second.real + third.real) / 2
         h = (first.real - alpha) / theta**2 / x - g
         f = 2 * g - (k0 / x - second.real) / (theta**2 * x)
-        values = -k1 / theta**2, k0 / x**2, third.imag / theta, first.imag / theta, (k0 - both.real) / theta**2, g, h, f
+        values = (
+            -k1 / theta**2,
+            k0 / x**2,
+            third.imag / theta,
+            first.imag / theta,
+            (k0 - both.real) / theta**2,
+            g,
+            h,
+            f,
+        )
         return dict(zip(LOGARITHM, values, strict=True))
 
 
 def in_units(values, exact_values, scales):
     """Errors of doubles in units of 2^-52 times the value at theta = 0."""
     return np.array(
-        [float(abs(exact(v) - x) / abs(u)) * 2.0**52 for v, x, u in zip(values, exact_values, scales, strict=True)]
+        [
+            float(abs(exact(v) - x) / abs(u)) * 2.0**52
+            for v, x, u in zip(values, exact_values, scales, strict=True)
+        ]
     )

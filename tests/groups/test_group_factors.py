@@ -165,4 +165,10 @@ def test_a_scale_that_is_not_positive_has_no_logarithm(G: Any) -> None:
 
 
 #: A factor with everything that the class offers.
-PARTS = {SE23: extended_parts, NavState: nav_parts, Gal3: galilean_parts, Sim2: similar_in_the_plane, Sim3: similar_in_space}
+PARTS = {
+    SE23: extended_parts,
+    NavState: nav_parts,
+    Gal3: galilean_parts,
+    Sim2: similar_in_the_plane,
+    Sim3: similar_in_space,
+}

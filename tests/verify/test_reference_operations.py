@@ -22,8 +22,8 @@ from liegen.manifolds import (
     Cal3Bundler,
     Cal3DS2,
     Gal3,
-    Sim3,
     Product,
+    Sim3,
 )  # fmt: skip
 from liegen.manifolds.functions import (
     abs as vabs,

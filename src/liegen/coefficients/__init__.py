@@ -63,8 +63,9 @@ def inverse_jacobian(s: Scalar, principal: bool = True) -> tuple[Scalar, Scalar]
 def similarity(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scalar]:
     """``(A, B, C)`` at ``lam`` = log(scale) and ``s`` = theta^2: V = A I + B W + C W^2 with W = [phi]x.
 
-    V = phi_1(lam + W), phi_1(z) = (e^z - 1)/z: the exponential of Sim(3) moves by V rho. With z = lam + i theta,
-    A = phi_1(lam), B = Im phi_1(z) / theta, C = (A - Re phi_1(z)) / s. ``lam = 0``: 1, c_2, c_3.
+    V = phi_1(lam + W), phi_1(z) = (e^z - 1)/z: the exponential of Sim(3) moves by V rho. With
+    z = lam + i theta, A = phi_1(lam), B = Im phi_1(z) / theta, C = (A - Re phi_1(z)) / s. ``lam = 0``: 1,
+    c_2, c_3.
     """
     if algebra_of(lam, s).exact:
         module = _similarity_forms()
@@ -99,7 +100,7 @@ def similarity_derivatives(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scal
 
 
 def similarity_logarithm(lam: Scalar, s: Scalar) -> tuple[Scalar, ...]:
-    """``(D, D0, K, T, C, G, H, F)``, even in ``lam``, of k(z) = (z/2) coth(z/2) - 1: the Jacobians of log are made of it.
+    """``(D, D0, K, T, C, G, H, F)``, even in ``lam``, of k(z) = (z/2) coth(z/2) - 1, for log's Jacobians.
 
     Jl^-1 = I - ad/2 + k(ad) and Jr^-1 = I + ad/2 + k(ad). With k0 = k(lam) and k1 = k(i theta): D = -k1/s,
     D0 = k0/lam^2, K = (k0 - k1)/(lam^2 + s), T = Im k(z)/(lam theta), C = (k0 - Re k(z))/s,

@@ -45,7 +45,7 @@ def stumpff_form(k: int) -> ClosedForm:
 
 @cache
 def remainder_form(k: int) -> ClosedForm:
-    """p_k(x) = phi_k(-x) = sum_j (-x)^j / (j + k)!, by p_{k+1} = (1/k! - p_k) / x from e^-x; x of either sign."""
+    """p_k(x) = sum_j (-x)^j / (j + k)!, by p_{k+1} = (1/k! - p_k) / x from e^-x; x of either sign."""
     if k == 0:
         return ClosedForm("p0", S, sp.exp(-S), 0, 0)
     lower = remainder_form(k - 1).expression

@@ -142,7 +142,7 @@ def correction(
     q: Callable[[Any], Any] = lambda _: mp.mpf(1),
     low: float = 0.0,
 ) -> tuple[float, ...]:
-    """P of ``degree`` in f = f0 + g P, g = x/q(x) (or (1 - w)/q(w)), on [low, end]; f0 rounded comes first."""
+    """P of ``degree`` in f = f0 + g P, g = x/q(x) (or (1 - w)/q(w)), on [low, end]; f0, rounded, first."""
     start, side = float(forms.limit(form)), -1 if form.point else 1
     samples: list[Sample] = []
     for x in chebyshev(end, GRID, low):

@@ -1,12 +1,13 @@
 """The coefficient functions of the similarity groups in double precision: on floats, arrays and SX alike.
 
-With p_k = phi_k(-lambda) = sum_j (-lambda)^j / (j + k)! and the Stumpff functions c_k(s) all of them are e^lambda
-times weighted means of a function of lambda alone and one in which lambda enters linearly,
+With p_k = phi_k(-lambda) = sum_j (-lambda)^j / (j + k)! and the Stumpff functions c_k(s) all of them are
+e^lambda times weighted means of a function of lambda alone and one in which lambda enters linearly,
 
     (lambda^2 X + s Y) / (lambda^2 + s),
 
 where X = Y to first order at 0: no difference is divided by anything small, and only the weight is 0/0 at 0.
-Errors are a few units of 2^-52 times the value at theta = 0, the largest for this lambda (docs/coefficients.md).
+Errors are a few units of 2^-52 times the value at theta = 0, the largest for this lambda
+(docs/coefficients.md).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from .evaluate import TINY, horner, stumpff
 
 @dataclass(frozen=True)
 class _Exponentials:
-    """e^lambda, p_k, and d_k = p_k - k p_{k+1}, which is the integral of t (1 - t)^{k-1} e^{-lambda t}/(k-1)!."""
+    """e^lambda, p_k, and d_k = p_k - k p_{k+1} (the integral of t (1 - t)^{k-1} e^{-lambda t}/(k-1)!)."""
 
     e: Scalar
     p1: Scalar
@@ -39,8 +40,8 @@ class _Exponentials:
 def _exponentials(lam: Scalar) -> _Exponentials:
     """Where |lambda| is small from a polynomial for p_5 downwards, else from e^-lambda upwards.
 
-    p_k = 1/k! - lambda p_{k+1} and d_k = 1/(k+1)! - lambda (d_{k+1} + p_{k+2}). Upwards d_k is written out, as its
-    two terms cancel.
+    p_k = 1/k! - lambda p_{k+1} and d_k = 1/(k+1)! - lambda (d_{k+1} + p_{k+2}). Upwards d_k is written out,
+    as its two terms cancel.
     """
     low = le(fabs(lam), tables.SIMILARITY_END)
     e = call("exp", lam)
@@ -144,8 +145,8 @@ def _hyperbolic(lam: Scalar) -> tuple[Scalar, ...]:
 def similarity_logarithm(lam: Scalar, s: Scalar) -> tuple[Scalar, ...]:
     """(D, D0, K, T, C, G, H, F), even in lambda.
 
-    The differences of c_k(-lambda^2) and c_k(s) are (lambda^2 + s) times the mean of both c_{k+2}, which divides
-    every difference of the definitions out.
+    The differences of c_k(-lambda^2) and c_k(s) are (lambda^2 + s) times the mean of both c_{k+2}, which
+    divides every difference of the definitions out.
     """
     h2, h3, h4, h5, h6 = _hyperbolic(lam)
     _, _, c2, c3, c4, c5 = stumpff(s, 5)

@@ -57,9 +57,9 @@ def similarity_derivative_forms() -> Expressions:
 def similarity_logarithm_forms() -> Expressions:
     """(D, D0, K, T, C, G, H, F) of k(z) = (z/2) coth(z/2) - 1, of which the Jacobians of log are made.
 
-    With k0 = k(lambda), k1 = k(i theta): D = -k1/s, D0 = k0/lambda^2, K = (k0 - k1)/(lambda^2 + s), T = Im k(z) over
-    lambda theta, C = (k0 - Re k(z))/s, G = (K - Re(k(z)/z)/lambda)/(2 s), H = ((Re k(z) - k1)/lambda^2 - K)/s,
-    F = (D - D0)/(lambda^2 + s).
+    With k0 = k(lambda), k1 = k(i theta): D = -k1/s, D0 = k0/lambda^2, K = (k0 - k1)/(lambda^2 + s),
+    T = Im k(z)/(lambda theta), C = (k0 - Re k(z))/s, G = (K - Re(k(z)/z)/lambda)/(2 s),
+    H = ((Re k(z) - k1)/lambda^2 - K)/s, F = (D - D0)/(lambda^2 + s).
     """
     theta, size = sp.sqrt(S), LAMBDA**2 + S
     base = 2 * (sp.cosh(LAMBDA) - sp.cos(theta))

@@ -1,8 +1,8 @@
 """Sim(2): closed forms on (cos, sin, x, y, scale), tangent (x, y, angle, log scale).
 
-With complex numbers an element is p -> e^z p + t, z = lambda + i angle, the group of affine maps of a line: exp is
-(e^z, phi_1(z) rho), and ad is [[z, -rho], [0, 0]], so that its functions are divided differences. phi_1 and phi_2
-come as the coefficients A I + B W + C W^2, W = i angle, that Sim(3) has too.
+With complex numbers an element is p -> e^z p + t, z = lambda + i angle, the group of affine maps of a line:
+exp is (e^z, phi_1(z) rho), and ad is [[z, -rho], [0, 0]], so that its functions are divided differences.
+phi_1 and phi_2 come as the coefficients A I + B W + C W^2, W = i angle, that Sim(3) has too.
 """
 
 from __future__ import annotations

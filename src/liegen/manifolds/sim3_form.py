@@ -1,9 +1,9 @@
 """Sim(3): closed forms on (quaternion, translation, scale), tangent (rotation, translation, log scale).
 
-exp(phi, rho, lambda) = (exp(phi), V rho, e^lambda) with V = phi_1(lambda + W) = A I + B W + C W^2, W = [phi]x. The
-left Jacobian is the derivative of exp, seen from the left: the translation t = V rho changes by d(V rho), less what
-the rotation and the scale alone do to t. With W P = rho phi^T - (phi.rho) I for P = [rho]x everything falls into
-[w]x + k I + u phi^T + phi v^T.
+exp(phi, rho, lambda) = (exp(phi), V rho, e^lambda) with V = phi_1(lambda + W) = A I + B W + C W^2, W =
+[phi]x. The left Jacobian is the derivative of exp, seen from the left: the translation t = V rho changes by
+d(V rho), less what the rotation and the scale alone do to t. With W P = rho phi^T - (phi.rho) I for P =
+[rho]x everything falls into [w]x + k I + u phi^T + phi v^T.
 """
 
 from __future__ import annotations
@@ -141,11 +141,12 @@ class Sim3Form(SimilarityForm):
         return self._inverse(d, 0.5)
 
     def _inverse(self, d: Coords, half: Scalar) -> Matrix:
-        """I + half ad + k(ad), ad = [[W, 0, 0], [P, lambda + W, -rho], [0, 0, 0]], k(z) = (z/2) coth(z/2) - 1.
+        """I + half ad + k(ad) with ad = [[W, 0, 0], [P, lambda + W, -rho], [0, 0, 0]].
 
-        k(ad) has k(W) and k(lambda + W) on its diagonal, -k(z)/z of lambda + W times rho at its right, and below
-        the divided differences of k at the eigenvalues lambda + w_i of one and w_j of the other block, w being
-        0, i theta, -i theta: of P's part along phi at (z, i theta), of the part across at (z, 0), (lambda, i theta).
+        k(ad) has k(W) and k(lambda + W) on its diagonal, -k(z)/z of lambda + W times rho at its right, and
+        below the divided differences of k at the eigenvalues lambda + w_i of one and w_j of the other block,
+        w being 0, i theta, -i theta: of P's part along phi at (z, i theta), of the part across at (z, 0),
+        (lambda, i theta).
         """
         phi, rho, lam = d[:3], d[3:6], d[6]
         s, m = dot(phi, phi), dot(phi, rho)

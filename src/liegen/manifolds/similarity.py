@@ -26,8 +26,8 @@ P = TypeVar("P", bound=Vector)
 class Similarity(Group, Generic[Q, P]):
     """(R, t, s), x p = s R p + t, s > 0: rotation type Q, points P. ``@`` composes and moves a point.
 
-    ``translation`` is the image of the origin, as in Sophus; GTSAM's Similarity2 and Similarity3 store t/s. Tangents
-    are the same as theirs. A scale that is not positive has no logarithm (not a number).
+    ``translation`` is the image of the origin, as in Sophus; GTSAM's Similarity2 and Similarity3 store t/s.
+    Tangents are the same as theirs. A scale that is not positive has no logarithm (not a number).
     """
 
     __slots__ = ()
@@ -60,7 +60,9 @@ class Similarity(Group, Generic[Q, P]):
         """R, the orientation of the body in the world."""
         form = self.form
         rows = _placed(form, 0, eye(form.rotation.dim))
-        return part(self, "rotation", self.rotation_class, slice(form.rotation.size), lambda _r, _x: ((rows,),))
+        return part(
+            self, "rotation", self.rotation_class, slice(form.rotation.size), lambda _r, _x: ((rows,),)
+        )
 
     @property
     def translation(self) -> P:

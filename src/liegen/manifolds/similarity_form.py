@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Sequence
 
 from liegen.algebra import Scalar, call
 from liegen.algebra.linear import Matrix, Vector, add, matscale, matvec, negate, scale, sub
+from liegen.coefficients import tables
 
 from .form import Coords, GroupForm, RotationForm, Source
 
-#: Around 0 and at both sides of the coefficients' switch the logarithms of scales are as telling as angles are.
-LOG_SCALES = (0.0, 1e-160, -1e-12, 1e-8, -1e-5, 1e-3, -0.1, 2.75 * (1 - 1e-9), -2.75 * (1 + 1e-9))
+#: Logarithms of scales around 0 and at both sides of the coefficients' switches.
+LOG_SCALES = (
+    0.0, 1e-160, -1e-12, 1e-8, -1e-5, 1e-3, -0.1,
+    *(side * end for end in (tables.SIMILARITY_END, math.sqrt(tables.STUMPFF5_END))
+      for side in (1 - 1e-9, -1 - 1e-9)),
+)  # fmt: skip
 
 
 class SimilarityForm(GroupForm):

@@ -290,8 +290,7 @@ def rule(node: Node) -> Rule:
     name, result = node.operation.name, node.manifold
     acts = name in ("exp", "pose", "similarity", "direction") and not issubclass(result, Vector)
     subject = result if acts else node.operands[0].manifold
-    maps = Pose | Rotation | Similarity
-    families = ((S2, _DIRECTIONS), (Calibration, _CAMERAS), (maps, _MAPS))
+    families = ((S2, _DIRECTIONS), (Calibration, _CAMERAS), ((Pose, Rotation, Similarity), _MAPS))
     table = next((rules for base, rules in families if issubclass(subject, base)), _VECTORS)
     # R3.exp, the identity, is shown with its class; exp(v) of every entry is not
     if table is _VECTORS and name == "exp" and not node.operation.show.startswith("exp"):

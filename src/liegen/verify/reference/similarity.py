@@ -1,4 +1,4 @@
-"""Similarities as matrices [[s R, t], [0, 1]]: exponential by ``expm``, closed-form logarithm with complex numbers."""
+"""Similarities as matrices [[s R, t], [0, 1]]: exponential by ``expm``, logarithm with complex numbers."""
 
 from __future__ import annotations
 
