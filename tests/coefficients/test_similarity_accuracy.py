@@ -24,7 +24,7 @@ TINY = [0.0, 5e-324, 1e-320, 2.3e-308, 1e-300, 1e-200, 1e-162, 1e-160, 1e-155, 1
 END = tables.SIMILARITY_END
 BOUNDS = {name: 4 if name in ("A", "B", "C", "a") else 10 for name in ref.NAMES}
 #: F is a difference of two means, a fifth of each.
-LOGARITHM_BOUNDS = {"D": 6, "D0": 6, "K": 6, "T": 6, "C": 8, "G": 10, "H": 10, "F": 24}
+LOGARITHM_BOUNDS = {"D": 8, "D0": 6, "K": 6, "T": 6, "C": 8, "G": 12, "H": 12, "F": 32}
 ANYWHERE = [n for n in ref.NAMES if n not in ("a", "b", "c")]
 
 

@@ -177,8 +177,8 @@ MOST = {
     "so3_Jr_inv": (54, 54), "se3_compose": (61, 112), "se3_inverse": (33, 84), "se3_between": (61, 112),
     "se3_act": (42, 69), "se3_exp": (80, 168), "se3_log": (90, 157), "se3_retract": (141, 280),
     "se3_local": (151, 236), "se3_adjoint": (51, 51), "se3_ad": (6, 6), "se3_Jr": (149, 149),
-    "sim3_compose": (74, 150), "sim3_between": (75, 151), "sim3_exp": (171, 522), "sim3_log": (221, 524),
-    "sim3_local": (296, 659), "sim3_adjoint": (63, 63), "sim3_Jr": (438, 438), "sim3_Jr_inv": (372, 372),
+    "sim3_compose": (74, 150), "sim3_between": (75, 151), "sim3_exp": (171, 522), "sim3_log": (221, 532),
+    "sim3_local": (296, 667), "sim3_adjoint": (63, 63), "sim3_Jr": (438, 438), "sim3_Jr_inv": (380, 380),
     "se3_Jr_inv": (126, 126), "se2_compose": (14, 21), "se2_adjoint": (2, 2), "se2_ad": (2, 2),
 }  # fmt: skip
 

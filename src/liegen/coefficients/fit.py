@@ -37,11 +37,13 @@ STUMPFF3 = 3.0
 STUMPFF5 = 10.0
 INVERSE = 10.0  # pi^2 and a little, for angles that rounding carries beyond pi
 SIMILARITY = 2.75  # of |lambda|: the range is [-end, end]
+HYPERBOLIC = 20.0  # of lambda^2
 ENDS = {
     "STUMPFF3_END": STUMPFF3,
     "STUMPFF5_END": STUMPFF5,
     "INVERSE_END": INVERSE,
     "SIMILARITY_END": SIMILARITY,
+    "HYPERBOLIC_END": HYPERBOLIC,
 }
 
 
@@ -164,8 +166,8 @@ def tables() -> dict[str, tuple[float, ...]]:
             "C4_5": correction(c4, STUMPFF5, 7),
             "C5_5": correction(c5, STUMPFF5, 7),
             "C6_5": correction(c6, STUMPFF5, 7),
-            "C5_H": correction(c5, 0.0, 8, low=-STUMPFF5),
-            "C6_H": correction(c6, 0.0, 8, low=-STUMPFF5),
+            "C5_H": correction(c5, 0.0, 10, low=-HYPERBOLIC),
+            "C6_H": correction(c6, 0.0, 10, low=-HYPERBOLIC),
             "P5": correction(forms.remainder_form(5), SIMILARITY, 16, low=-SIMILARITY),
             "INVERSE_Q": (*inverse_q, 1.0),
             "INVERSE_D": correction(d, INVERSE, 3, lambda x: horner((*inverse_q, 1), x)),

@@ -127,11 +127,11 @@ def similarity_derivatives(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scal
 def _hyperbolic(lam: Scalar) -> tuple[Scalar, ...]:
     """c_2 to c_6 at -lambda^2, all terms positive: c_k = 1/k! + lambda^2 c_{k+2}."""
     x = lam * lam
-    low = le(x, tables.STUMPFF5_END)
+    low = le(x, tables.HYPERBOLIC_END)
     c6, c5 = horner(tables.C6_H, -x), horner(tables.C5_H, -x)
     c4, c3 = 1.0 / 24.0 + x * c6, 1.0 / 6.0 + x * c5
     c2 = 0.5 + x * c4
-    far = select(low, math.sqrt(tables.STUMPFF5_END), lam)
+    far = select(low, math.sqrt(tables.HYPERBOLIC_END), lam)
     e = call("exp", lam)
     back, r = 1.0 / e, 1.0 / far
     r2 = r * r

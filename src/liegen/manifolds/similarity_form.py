@@ -15,7 +15,7 @@ from .form import Coords, GroupForm, RotationForm, Source
 #: Logarithms of scales around 0 and at both sides of the coefficients' switches.
 LOG_SCALES = (
     0.0, 1e-160, -1e-12, 1e-8, -1e-5, 1e-3, -0.1,
-    *(side * end for end in (tables.SIMILARITY_END, math.sqrt(tables.STUMPFF5_END))
+    *(side * end for end in (tables.SIMILARITY_END, math.sqrt(tables.HYPERBOLIC_END))
       for side in (1 - 1e-9, -1 - 1e-9)),
 )  # fmt: skip
 
