@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from .manifolds import NavState as NavState
     from .manifolds import Product as Product
     from .manifolds import R as R
+    from .manifolds import Sim2 as Sim2
+    from .manifolds import Sim3 as Sim3
     from .manifolds import Vector as Vector
     from .manifolds.functions import abs as abs
     from .manifolds.functions import acos as acos
@@ -71,7 +73,8 @@ _NAMES: dict[str, tuple[str, ...]] = {
     ".layouts": ("Layout",),
     ".manifolds": (
         "R", "R1", "R2", "R3", "R4", "R5", "R6", "R7", "R8", "R9", "S2", "SE2", "SE23", "SE3", "SO2", "SO3",
-        "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Gal3", "NavState", "Product", "Vector",
+        "Cal3Bundler", "Cal3DS2", "Cal3_S2", "Condition", "Gal3", "NavState", "Product", "Sim2", "Sim3",
+        "Vector",
     ),
     ".manifolds.functions": (
         "abs", "acos", "asin", "atan2", "cos", "cross", "dot", "exp", "log", "maximum", "minimum", "sin",

@@ -235,3 +235,23 @@ def test_frames_say_where_the_chart_has_other_axes():
         return z_WB.local(T_WB)
 
     assert any("chart symforce: columns of T_WB" in line for line in framed.kernel.frames)
+
+
+@pytest.mark.parametrize("G", [liegen.Sim2, liegen.Sim3], ids=lambda G: G.__name__)
+@pytest.mark.parametrize("name", PRESETS)
+def test_similarities_have_their_own_chart_and_refuse_the_others(G, name):
+    def prior_of(x, *, z):
+        return z.local(x)
+
+    prior_of.__annotations__ = {"x": G, "z": G}
+    f = factor(prior_of)
+    same = ("gtsam", "gtsam-4.2") if G is liegen.Sim3 else ("gtsam",)
+    if name in same:
+        values = drawn(f)
+        charted = numbers(f.in_chart(name), values)["res_D_x"]
+        np.testing.assert_array_equal(numbers(f, values)["res_D_x"], charted)
+        return
+    with pytest.raises(
+        DefinitionError, match=f"{G.__name__} has no chart '{name}'; the one that exists is .* 'gtsam'"
+    ):
+        _ = f.in_chart(name).graph

@@ -35,7 +35,7 @@ class Reader:
 
     def __init__(self, values, group, matrix=None):
         self.values, self.group, self.matrix = dict(values), group, matrix
-        self.planar = group in (liegen.SE2, liegen.SO2)
+        self.planar = group in (liegen.SE2, liegen.SO2, liegen.Sim2)
 
     def line(self, line, rows=None, columns=None):
         name, _, text = line.partition(" = ")
@@ -78,6 +78,8 @@ class Reader:
 
     def product(self, text, rows, columns):
         """From right to left; rows and columns of the identity take their size from their neighbours."""
+        if [part for _, part in split(text, " ")][1:2] == ["/"]:
+            return np.atleast_2d(self.factor(text))
         parts = [part for _, part in split(text, " ") if part != "I"]
         numbers = [None if part.startswith("I[") else self.factor(part) for part in parts]
         scalar, result = 1.0, None if columns is None else np.eye(columns)
@@ -102,7 +104,7 @@ class Reader:
             return J
         if text == "M":
             return self.matrix
-        if m := re.fullmatch(r"\[-?(?:\[.*\]x|I|0|1|J .*|R\(.*\)(\^T)?)[,;] .*\]", text):
+        if m := re.fullmatch(r"\[-?(?:\[.*\]x|I|0|1|J .*|R\(.*\)(\^T)?( / \S*)?)[,;] .*\]", text):
             return self.blocks(text[1:-1])
         if m := re.fullmatch(r"\[(.*)\]x", text):
             return skew(np.asarray(self.array(m[1])))
@@ -115,6 +117,8 @@ class Reader:
             return (J @ np.asarray(self.array(m[1])))[None, :] / self.array(m[2])
         if m := re.fullmatch(r"\((B\(.*\)) / (.*)\)", text):
             return self.factor(m[1]) / self.array(m[2])
+        if m := re.fullmatch(r"\(?(R\([^()]*\)\^T) / ([^()]*)\)?", text):
+            return self.factor(m[1]) / float(np.squeeze(self.array(m[2])))
         value = np.asarray(self.array(text), dtype=float)
         return value.reshape(-1, 1) if value.size > 1 else value.reshape(())
 
@@ -142,8 +146,8 @@ class Reader:
         parts = [p for _, p in split(text, "; " if below else ", ")]
         made = []
         for k, p in enumerate(parts):
-            translation = (k == 0) == self.planar
-            sizes = {"I": np.eye(n), "-I": -np.eye(n), "1": np.eye(1), "0": (n if translation else dim,)}
+            size = (n, dim, 1)[k] if self.planar else (dim, n, 1)[k]
+            sizes = {"I": np.eye(n), "-I": -np.eye(n), "1": np.eye(1), "0": (size,)}
             if p in sizes:
                 made.append(sizes[p])
             else:

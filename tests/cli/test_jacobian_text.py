@@ -13,6 +13,8 @@ from liegen import (
     SE3,
     SO2,
     SO3,
+    Sim2,
+    Sim3,
     abs,
     acos,
     asin,
@@ -89,6 +91,28 @@ def pose_pieces_2d(x: SE2, q: SO2, p: R2):
 
 
 @factor
+def similarity_pieces(x: Sim3, q: SO3, p: R3):
+    moved = x.transform_from(q @ p) + x.transform_to(p) + x.translation
+    return x.scale * moved + Sim3(q, p, p[0]).transform_from(p)
+
+
+@factor
+def similarity_pieces_2d(x: Sim2, q: SO2, p: R2):
+    moved = x.transform_from(q @ p) + x.transform_to(p) + x.translation
+    return x.scale * moved + Sim2(q, p, p[0]).transform_from(p)
+
+
+@factor
+def rotation_of_similarity(x: Sim3, *, z: SO3):
+    return z.local(x.rotation)
+
+
+@factor
+def rotation_of_similarity_2d(x: Sim2, *, z: SO2):
+    return z.local(x.rotation)
+
+
+@factor
 def rotation_of_pose(x: SE3, *, z: SO3):
     return z.local(x.rotation)
 
@@ -143,9 +167,11 @@ def chained(x: SE3, v: R3):
 #: Factors and the group of their Jr, Jl, Ad.
 CASES_OF_GROUP = [
     (group_operations, SE3), (group_operations_2d, SE2), (pose_pieces, SE3), (pose_pieces_2d, SE2),
-    (rotation_of_pose, SO3), (rotation_of_pose_2d, SO2), (directions, SE3), (bearing_2d, SE2), (vectors, SE3),
-    (constant_matrix, SE3), (chosen, SE3), (scalars, SE3), (chained, SE3), (library.between_so3, SO3),
-    (library.between_se2, SE2), (library.range_se2, SE2), (library.range_se3, SE3), (library.prior_so3, SO3),
+    (similarity_pieces, Sim3), (similarity_pieces_2d, Sim2), (rotation_of_similarity, SO3),
+    (rotation_of_similarity_2d, SO2), (rotation_of_pose, SO3), (rotation_of_pose_2d, SO2), (directions, SE3),
+    (bearing_2d, SE2), (vectors, SE3), (constant_matrix, SE3), (chosen, SE3), (scalars, SE3), (chained, SE3),
+    (library.between_so3, SO3), (library.between_se2, SE2), (library.range_se2, SE2), (library.range_se3,
+    SE3), (library.prior_so3, SO3),
 ]  # fmt: skip
 
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GENERATE = "liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR"
+NAMES = ("SO2", "SE2", "SO3", "SE3", "SE23", "Gal3", "Sim2", "Sim3")
+GENERATE = f"liegen generate {' '.join(f'--group {name}' for name in NAMES)} -o DIR"
 
 
 def skew(v):
@@ -47,6 +48,11 @@ class MatrixGroup:
     vee: Callable
 
 
+def similarity(turn, t, lam):
+    """The rotation's part, and lam on its diagonal."""
+    return pose(turn + lam * np.eye(len(t)), t)
+
+
 PLANE = np.array([[0.0, -1.0], [1.0, 0.0]])
 MATRIX_GROUPS: Mapping[str, MatrixGroup] = {
     "SO2": MatrixGroup(1, plane_matrix, lambda d: d[0] * PLANE, lambda m: np.array([m[1, 0]])),
@@ -62,6 +68,18 @@ MATRIX_GROUPS: Mapping[str, MatrixGroup] = {
         lambda c: with_one(pose(quaternion_matrix(c[:4]), c[4:])),
         lambda d: pose(skew(d[:3]), d[3:]),
         lambda m: np.array([m[2, 1], m[0, 2], m[1, 0], *m[:3, 3]]),
+    ),
+    "Sim2": MatrixGroup(
+        4,
+        lambda c: with_one(pose(c[4] * plane_matrix(c[:2]), c[2:4])),
+        lambda d: similarity(d[2] * PLANE, d[:2], d[3]),
+        lambda m: np.array([m[0, 2], m[1, 2], m[1, 0], m[0, 0]]),
+    ),
+    "Sim3": MatrixGroup(
+        7,
+        lambda c: with_one(pose(c[7] * quaternion_matrix(c[:4]), c[4:7])),
+        lambda d: similarity(skew(d[:3]), d[3:6], d[6]),
+        lambda m: np.array([m[2, 1], m[0, 2], m[1, 0], *m[:3, 3], m[0, 0]]),
     ),
 }
 

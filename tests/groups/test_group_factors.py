@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from group_tools import BOUND, worst
 
-from liegen import R3, SE23, SO3, DefinitionError, Gal3, NavState, factor, stack
+from liegen import R2, R3, SE23, SO2, SO3, DefinitionError, Gal3, NavState, Sim2, Sim3, factor, stack
 from liegen.library.sampling import between, prior
 from liegen.verify import verify
 
@@ -32,7 +32,7 @@ def factors_of(G: Any) -> dict[str, Any]:
     return {f.name: f for f in (prior_of, between_of, all_operations, interpolated)}
 
 
-GROUPS = [SE23, NavState, Gal3]
+GROUPS = [SE23, NavState, Gal3, Sim2, Sim3]
 
 
 @pytest.mark.parametrize("G", GROUPS, ids=lambda G: G.__name__)
@@ -124,5 +124,51 @@ def test_the_charts_differ_beyond_first_order() -> None:
     np.testing.assert_array_equal(np.asarray(SE23.exp(d)), np.asarray(NavState.exp(d)))
 
 
+@factor
+def similar_in_space(x: Sim3, y: Sim3, p: R3, *, z: SO3):
+    """Everything that the class offers: parts, constructor, actions."""
+    moved = Sim3(z @ x.rotation, y.translation + x @ p, x.scale * y.scale)
+    return stack(moved.local(y), y.transform_to(p), x.scale, z.local(x.rotation))
+
+
+@factor
+def similar_in_the_plane(x: Sim2, y: Sim2, p: R2, *, z: SO2):
+    moved = Sim2(z @ x.rotation, y.translation + x @ p, x.scale * y.scale)
+    return stack(moved.local(y), y.transform_to(p), x.scale, z.local(x.rotation))
+
+
+@pytest.mark.parametrize("function", [similar_in_space, similar_in_the_plane], ids=lambda f: f.name)
+def test_parts_and_constructor_of_similarities(function: Any) -> None:
+    errors = worst(function)
+    assert max(error for error, _ in errors.values()) <= BOUND, errors
+
+
+@pytest.mark.parametrize(("G", "Q"), [(Sim2, SO2), (Sim3, SO3)])
+def test_similarities_scale_then_move(G: Any, Q: Any) -> None:
+    n = G.form.space
+    x = G(Q.identity(), np.arange(n) + 1.0, 2.0)
+    np.testing.assert_array_equal(np.asarray(x @ np.ones(n)), np.arange(n) + 3.0)
+    np.testing.assert_array_equal(np.asarray(x.translation), np.arange(n) + 1.0)
+    assert float(x.scale) == 2.0
+    assert float(G(Q.identity(), np.zeros(n)).scale) == 1.0
+    np.testing.assert_allclose(np.asarray(x.inverse() @ (x @ np.ones(n))), np.ones(n), rtol=1e-15)
+    with pytest.raises(DefinitionError, match=f"needs an? {Q.__name__}, got {G.__name__}"):
+        G(x, np.zeros(n), 1.0)
+
+
+@pytest.mark.parametrize("G", [Sim2, Sim3], ids=lambda G: G.__name__)
+def test_a_scale_that_is_not_positive_has_no_logarithm(G: Any) -> None:
+    coords = np.asarray(G.identity()).copy()
+    coords[-1] = -1.0
+    with np.errstate(invalid="ignore"):
+        assert np.isnan(np.asarray(G.from_storage(coords).log())[-1])
+
+
 #: A factor with everything that the class offers.
-PARTS = {SE23: extended_parts, NavState: nav_parts, Gal3: galilean_parts}
+PARTS = {
+    SE23: extended_parts,
+    NavState: nav_parts,
+    Gal3: galilean_parts,
+    Sim2: similar_in_the_plane,
+    Sim3: similar_in_space,
+}

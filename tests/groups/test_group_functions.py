@@ -25,10 +25,12 @@ NAMES = list(groups())
 
 
 def random_element(group: str, rng) -> np.ndarray:
-    n = {"SO2": 2, "SE2": 2, "SO3": 4, "SE3": 4}[group]
+    n = {"SO2": 2, "SE2": 2, "Sim2": 2}.get(group, 4)
     unit = rng.normal(size=n)
     unit /= np.linalg.norm(unit)
-    return np.concatenate([unit, rng.normal(size={"SE2": 2, "SE3": 3}.get(group, 0))])
+    rest = rng.normal(size={"SE2": 2, "SE3": 3, "Sim2": 3, "Sim3": 4}.get(group, 0))
+    rest[-1:] = np.exp(rest[-1:]) if group.startswith("Sim") else rest[-1:]
+    return np.concatenate([unit, rest])
 
 
 @pytest.mark.parametrize("group", NAMES)
@@ -95,7 +97,7 @@ ANGLES = [0.0, 1e-320, 1e-160, 1e-12, 1e-8, 1e-3, 1.0, np.pi - 1e-8, np.pi, np.p
 ANGLES += [2 * np.pi - 1e-3, 2 * np.pi + 1e-3, 7.0, 3 * np.pi, 20.0, 100.0]
 
 
-@pytest.mark.parametrize("group", ["SO3", "SE2", "SE3"])
+@pytest.mark.parametrize("group", ["SO3", "SE2", "SE3", "Sim2", "Sim3"])
 @pytest.mark.parametrize("angle", ANGLES)
 def test_inverse_jacobians_at_any_tangent_vector(group, angle):
     """2e-14 max(1, s), and what four units in the last place of the angle change near a pole."""
@@ -175,6 +177,8 @@ MOST = {
     "so3_Jr_inv": (54, 54), "se3_compose": (61, 112), "se3_inverse": (33, 84), "se3_between": (61, 112),
     "se3_act": (42, 69), "se3_exp": (80, 168), "se3_log": (90, 157), "se3_retract": (141, 280),
     "se3_local": (151, 236), "se3_adjoint": (51, 51), "se3_ad": (6, 6), "se3_Jr": (149, 149),
+    "sim3_compose": (74, 150), "sim3_between": (75, 151), "sim3_exp": (171, 522), "sim3_log": (221, 532),
+    "sim3_local": (296, 667), "sim3_adjoint": (63, 63), "sim3_Jr": (438, 438), "sim3_Jr_inv": (380, 380),
     "se3_Jr_inv": (126, 126), "se2_compose": (14, 21), "se2_adjoint": (2, 2), "se2_ad": (2, 2),
 }  # fmt: skip
 
@@ -191,7 +195,8 @@ def test_operations(name):
 def test_left_jacobians_cost_what_right_ones_do(group):
     for name in ("J{}", "J{}_inv"):
         right, left = (FUNCTIONS[f"{group.lower()}_{name.format(side)}"].kernel.value for side in "rl")
-        assert right.operations == left.operations
+        sign_of_lambda = group.startswith("Sim") and name == "J{}"  # exp(-lambda) and exp(lambda)
+        assert right.operations == left.operations + sign_of_lambda
 
 
 def test_the_manifest_tells_the_operations():

@@ -23,13 +23,15 @@ from liegen.manifolds import (
     Cal3Bundler,
     Cal3DS2,
     Gal3,
+    Sim2,
+    Sim3,
     Vector,
 )
 from liegen.manifolds.vector import stack
 from liegen.verify.reference.matrix import skew
 
 mp: Any = mpmath.mp
-ORDER = {"SO2": 1, "SO3": 3, "SE2": 3, "SE3": 6, "SE23": 9, "Gal3": 10}
+ORDER = {"SO2": 1, "SO3": 3, "SE2": 3, "SE3": 6, "SE23": 9, "Gal3": 10, "Sim2": 4, "Sim3": 7}
 ROTATION = {
     "SO2": slice(0, 1),
     "SO3": slice(0, 3),
@@ -37,6 +39,8 @@ ROTATION = {
     "SE3": slice(0, 3),
     "SE23": slice(0, 3),
     "Gal3": slice(0, 3),
+    "Sim2": slice(2, 3),
+    "Sim3": slice(0, 3),
 }
 MANIFOLDS: dict[str, type[lm.Manifold]] = {
     "SO2": SO2,
@@ -45,6 +49,8 @@ MANIFOLDS: dict[str, type[lm.Manifold]] = {
     "SE3": SE3,
     "SE23": SE23,
     "Gal3": Gal3,
+    "Sim2": Sim2,
+    "Sim3": Sim3,
 }
 
 
@@ -65,6 +71,11 @@ def hat(name: str, d: Any) -> Any:
         return skew(d)
     if name == "SE2":
         return ((z, -d[2], d[0]), (d[2], z, d[1]), (z, z, z))
+    if name in ("Sim2", "Sim3"):
+        lam, rho = d[-1], d[:2] if name == "Sim2" else d[3:6]
+        turn = hat("SO2", d[2:3]) if name == "Sim2" else skew(d[:3])
+        rows = [[x + lam if i == j else x for j, x in enumerate(row)] for i, row in enumerate(turn)]
+        return (*((*row, x) for row, x in zip(rows, rho, strict=True)), (z,) * (len(rho) + 1))
     if name == "Gal3":
         rows = zip(skew(d[:3]), d[6:9], d[3:6], strict=True)
         return (*((*row, v, x) for row, v, x in rows), (z, z, z, z, d[9]), (z,) * 5)
@@ -82,7 +93,7 @@ def tangent(name: str, angle: Any, seed: int, length: float = 3.0) -> Any:
     size = mp.sqrt(sum(x * x for x in v[turn]))
     v[turn] = [x / size * angle for x in v[turn]]
     rest = [k for k in range(len(v)) if k not in range(len(v))[turn]]
-    for k in rest:
+    for k in rest[:-1] if name.startswith("Sim") else rest:  # the last is the logarithm of the scale
         v[k] = v[k] * length
     return tuple(v)
 
@@ -114,6 +125,16 @@ def prior_se23(x: SE23, *, z: SE23) -> Vector:
 
 @factor
 def prior_gal3(x: Gal3, *, z: Gal3) -> Vector:
+    return z.local(x)
+
+
+@factor
+def prior_sim2(x: Sim2, *, z: Sim2) -> Vector:
+    return z.local(x)
+
+
+@factor
+def prior_sim3(x: Sim3, *, z: Sim3) -> Vector:
     return z.local(x)
 
 
@@ -228,4 +249,6 @@ PRIORS: dict[str, Any] = {
     "SE3": prior_se3,
     "SE23": prior_se23,
     "Gal3": prior_gal3,
+    "Sim2": prior_sim2,
+    "Sim3": prior_sim3,
 }

@@ -81,6 +81,8 @@ def _translation(name: str) -> list[slice]:
         "SE3": [slice(3, 6)],
         "SE23": [slice(3, 6), slice(6, 9)],
         "Gal3": [slice(3, 6), slice(6, 9), slice(9, 10)],
+        "Sim2": [slice(0, 2), slice(3, 4)],
+        "Sim3": [slice(3, 6), slice(6, 7)],
     }.get(name, [])
 
 

@@ -23,6 +23,7 @@ from liegen.manifolds import (
     Cal3DS2,
     Gal3,
     Product,
+    Sim3,
 )  # fmt: skip
 from liegen.manifolds.functions import (
     abs as vabs,
@@ -122,12 +123,14 @@ class Placed(Product):
 
 
 @function
-def extended_language(x: SE23, g: Gal3, *, d: R3) -> Any:
+def extended_language(x: SE23, g: Gal3, u: Sim3, *, d: R3) -> Any:
     s = Placed(pose=x.pose, point=x.velocity)
     return outputs(
         x=SE23(x.rotation, x.position + d, x.velocity),
         g=Gal3(g.rotation, g.position + g.velocity, d, g.time),
         s=s.retract(stack(d, d, d)),
+        u=Sim3(u.rotation, u @ u.translation, u.scale),
+        seen=u.transform_to(d),
         moved=s.pose @ s.point,
     )
 
@@ -155,12 +158,13 @@ LANGUAGES = [
 @pytest.mark.parametrize("language", LANGUAGES, ids=lambda f: f.name)
 def test_every_operation_agrees_with_the_closed_forms_on_doubles(language: Any) -> None:
     g = np.random.default_rng(11)
-    size = {"SE3": 4, "SE2": 2, "S2": 3, "SE23": 4, "Gal3": 4}
+    size = {"SE3": 4, "SE2": 2, "S2": 3, "SE23": 4, "Gal3": 4, "Sim3": 4}
     for _ in range(5):
         sample: dict[str, Any] = {}
         for p in language.graph.parameters:
             x, k = g.normal(size=p.manifold.form.size), size.get(p.manifold.form.name, 0)
             x[:k] /= np.linalg.norm(x[:k]) if k else 1
+            x[-1] = abs(x[-1]) if p.manifold.form.name == "Sim3" else x[-1]
             sample[p.name] = x
         expected, found = in_doubles(language.graph, sample), reference.outputs(language.graph, sample)
         for name, node in language.graph.outputs:

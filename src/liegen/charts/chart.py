@@ -62,5 +62,5 @@ class Preset:
     definition: str = ""  # what it assumes of the library, one sentence or two
 
     def chart(self, form: ManifoldForm) -> Chart:
-        """The chart of a rotation or pose."""
-        return self.plane if form.name in ("SO2", "SE2") else self.space
+        """The chart of a rotation, pose or similarity."""
+        return self.plane if form.name in ("SO2", "SE2", "Sim2") else self.space

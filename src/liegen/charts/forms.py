@@ -5,8 +5,9 @@ from __future__ import annotations
 from liegen.errors import DefinitionError
 from liegen.manifolds import ManifoldForm
 from liegen.manifolds.form import PoseForm, RotationForm
+from liegen.manifolds.similarity_form import SimilarityForm
 
-from .chart import Preset
+from .chart import Chart, Preset
 from .contract import FormChart
 from .poses import CoupledChart, SplitChart
 from .rotations import RotationChart
@@ -17,6 +18,8 @@ def form_chart(form: ManifoldForm, preset: Preset) -> FormChart | None:
 
     Raises DefinitionError where the chart does not exist for the manifold.
     """
+    if isinstance(form, SimilarityForm):
+        return _only_chart(form, preset)
     if not isinstance(form, RotationForm | PoseForm):
         return None
     chart = preset.chart(form)
@@ -39,6 +42,15 @@ def form_chart(form: ManifoldForm, preset: Preset) -> FormChart | None:
     own = "rotation-first" if form.rotation_first else "translation-first"
     same = chart.order in ("own", own) and chart.side == "right" and chart.scale == 1
     return None if same else CoupledChart(form, chart, note)
+
+
+def _only_chart(form: SimilarityForm, preset: Preset) -> None:
+    """Similarities have x exp(d) alone; raises DefinitionError for what a preset means by another chart."""
+    if preset.chart(form) != Chart():
+        raise DefinitionError(
+            f"{form.name} has no chart {preset.name!r}; the one that exists is x.retract(d) = x exp(d), "
+            "chart 'gtsam', with the tangent " + ", ".join(form.tangent)
+        )
 
 
 _MAPPED = {

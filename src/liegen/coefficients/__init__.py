@@ -11,7 +11,7 @@ from typing import Any
 
 from liegen.algebra import Scalar, algebra_of
 
-from . import evaluate
+from . import evaluate, similarity_doubles
 
 _LAST = (1, 3, 5)
 
@@ -19,6 +19,10 @@ _LAST = (1, 3, 5)
 def _closed_forms() -> Any:
     """Loaded on first use: it needs SymPy, which takes long to start."""
     return importlib.import_module(".closed_forms", __name__)
+
+
+def _similarity_forms() -> Any:
+    return importlib.import_module(".similarity_forms", __name__)
 
 
 def stumpff(s: Scalar, upto: int) -> tuple[Scalar, ...]:
@@ -54,3 +58,56 @@ def inverse_jacobian(s: Scalar, principal: bool = True) -> tuple[Scalar, Scalar]
     if algebra_of(s).exact:
         return _closed_forms().inverse_jacobian(s)
     return evaluate.inverse_jacobian(s) if principal else evaluate.inverse_jacobian_anywhere(s)
+
+
+def similarity(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+    """``(A, B, C)`` at ``lam`` = log(scale) and ``s`` = theta^2: V = A I + B W + C W^2 with W = [phi]x.
+
+    V = phi_1(lam + W), phi_1(z) = (e^z - 1)/z: the exponential of Sim(3) moves by V rho. With
+    z = lam + i theta, A = phi_1(lam), B = Im phi_1(z) / theta, C = (A - Re phi_1(z)) / s. ``lam = 0``: 1,
+    c_2, c_3.
+    """
+    if algebra_of(lam, s).exact:
+        module = _similarity_forms()
+        a, b, c = module.evaluate(module.similarity_forms(), lam, s)
+        return a, b, c
+    return similarity_doubles.similarity(lam, s)
+
+
+def similarity_inverse(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+    """``(a, b, c)`` with V^-1 = a I - b W + c W^2 (see ``similarity``). ``lam = 0``: 1, 1/2, D.
+
+    Its only poles are at lam = 0 and theta = 2 pi n, n >= 1.
+    """
+    if algebra_of(lam, s).exact:
+        module = _similarity_forms()
+        a, b, c = module.evaluate(module.similarity_inverse_forms(), lam, s)
+        return a, b, c
+    return similarity_doubles.similarity_inverse(lam, s)
+
+
+def similarity_derivatives(lam: Scalar, s: Scalar) -> tuple[Scalar, Scalar, Scalar, Scalar, Scalar]:
+    """``(A2, B2, C2, Bs, Cs)``, what the Jacobians of Sim(3) need beside ``similarity``.
+
+    A2 I + B2 W + C2 W^2 = phi_2(lam + W) = V - dV/dlam with phi_2(z) = (e^z - 1 - z)/z^2; Bs = 2 dB/ds and
+    Cs = 2 dC/ds.
+    """
+    if algebra_of(lam, s).exact:
+        module = _similarity_forms()
+        a, b, c, by_b, by_c = module.evaluate(module.similarity_derivative_forms(), lam, s)
+        return a, b, c, by_b, by_c
+    return similarity_doubles.similarity_derivatives(lam, s)
+
+
+def similarity_logarithm(lam: Scalar, s: Scalar) -> tuple[Scalar, ...]:
+    """``(D, D0, K, T, C, G, H, F)``, even in ``lam``, of k(z) = (z/2) coth(z/2) - 1, for log's Jacobians.
+
+    Jl^-1 = I - ad/2 + k(ad) and Jr^-1 = I + ad/2 + k(ad). With k0 = k(lam) and k1 = k(i theta): D = -k1/s,
+    D0 = k0/lam^2, K = (k0 - k1)/(lam^2 + s), T = Im k(z)/(lam theta), C = (k0 - Re k(z))/s,
+    G = (K - Re(k(z)/z)/lam)/(2 s), H = ((Re k(z) - k1)/lam^2 - K)/s, F = (D - D0)/(lam^2 + s).
+    ``lam = 0``: D, 1/12, D, 2 D + s E, D, -E/2, and so on, with (D, E) of ``inverse_jacobian``.
+    """
+    if algebra_of(lam, s).exact:
+        module = _similarity_forms()
+        return module.evaluate(module.similarity_logarithm_forms(), lam, s)
+    return similarity_doubles.similarity_logarithm(lam, s)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import similarity_measurement as planes
 from .measurement import (
     INVERSE,
     LOG,
@@ -128,6 +129,13 @@ def _literal_cells(x: Literal) -> tuple[str, ...]:
     return x.function, x.interval, f"{x.theta:.3g}", f"{x.s:.3g}", f"{x.rounded:.3g}"
 
 
+def _plane_cells(x: planes.Worst) -> tuple[str, ...]:
+    return (
+        x.function, f"[0, {round(x.high / np.pi)} pi]".replace("1 pi", "pi"), f"{x.bound:g}", f"{x.worst:.2f}",
+        f"{x.lam:.6g}", f"{x.theta:.6g}", f"{x.written:.1g}",
+    )  # fmt: skip
+
+
 def report(count: int) -> tuple[str, bool]:
     """(text, whether every bound holds)."""
     found = rows(count)
@@ -135,8 +143,14 @@ def report(count: int) -> tuple[str, bool]:
     worst = table(header, [_row_cells(r) for r in found])
     header = ("function", "theta", "theta exact", "s exact", "nearest double")
     product = table(header, [_literal_cells(x) for x in literal(count)])
-    text = f"{worst}\nAbsolute error times theta^k beyond 2 pi, in units of 2^-52:\n\n{product}"
-    return text, all(r.holds for r in found)
+    two = [x for plane in planes.PLANES for x in planes.measure(plane, count // 20)]
+    header = ("function", "theta", "bound", "worst", "at lambda", "at theta", "as written")
+    text = (
+        f"{worst}\nAbsolute error times theta^k beyond 2 pi, in units of 2^-52:\n\n{product}"
+        f"\nSimilarities, in units of 2^-52 times the value at theta = 0:\n\n"
+        f"{table(header, [_plane_cells(x) for x in two])}"
+    )
+    return text, all(r.holds for r in (*found, *two))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

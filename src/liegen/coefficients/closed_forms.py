@@ -44,6 +44,15 @@ def stumpff_form(k: int) -> ClosedForm:
 
 
 @cache
+def remainder_form(k: int) -> ClosedForm:
+    """p_k(x) = sum_j (-x)^j / (j + k)!, by p_{k+1} = (1/k! - p_k) / x from e^-x; x of either sign."""
+    if k == 0:
+        return ClosedForm("p0", S, sp.exp(-S), 0, 0)
+    lower = remainder_form(k - 1).expression
+    return ClosedForm(f"p{k}", S, (1 / sp.factorial(k - 1) - lower) / S, 0, k)
+
+
+@cache
 def inverse_form() -> ClosedForm:
     """D(s), the coefficient of [phi]x^2 in Jr^-1(phi); poles at theta = 2 pi n, n >= 1."""
     half = sp.sqrt(S) / 2

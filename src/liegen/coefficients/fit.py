@@ -36,7 +36,15 @@ SETTLED = 1e-6
 STUMPFF3 = 3.0
 STUMPFF5 = 10.0
 INVERSE = 10.0  # pi^2 and a little, for angles that rounding carries beyond pi
-ENDS = {"STUMPFF3_END": STUMPFF3, "STUMPFF5_END": STUMPFF5, "INVERSE_END": INVERSE}
+SIMILARITY = 2.75  # of |lambda|: the range is [-end, end]
+HYPERBOLIC = 20.0  # of lambda^2
+ENDS = {
+    "STUMPFF3_END": STUMPFF3,
+    "STUMPFF5_END": STUMPFF5,
+    "INVERSE_END": INVERSE,
+    "SIMILARITY_END": SIMILARITY,
+    "HYPERBOLIC_END": HYPERBOLIC,
+}
 
 
 @dataclass(frozen=True)
@@ -60,9 +68,10 @@ def horner(coefficients: Sequence[Any], x: Any) -> Any:
     return total
 
 
-def chebyshev(end: float, count: int) -> list[Any]:
-    """Chebyshev points of [0, end], ascending."""
-    return [mp.mpf(end) / 2 * (1 - mp.cos(mp.pi * (2 * i + 1) / (2 * count))) for i in range(count)]
+def chebyshev(end: float, count: int, start: float = 0.0) -> list[Any]:
+    """Chebyshev points of [start, end], ascending."""
+    half = (mp.mpf(end) - start) / 2
+    return [start + half * (1 - mp.cos(mp.pi * (2 * i + 1) / (2 * count))) for i in range(count)]
 
 
 def denominator(form: ClosedForm, end: float, top: int, bottom: int) -> tuple[float, ...]:
@@ -124,19 +133,23 @@ def rounded_minimax(samples: Sequence[Sample], degree: int) -> tuple[float, ...]
     for left in range(degree, -1, -1):
         a = float(minimax(rest, left)[0][0])
         done.append(a)
-        rest = [Sample(p.x, (p.target - a) / p.x, p.weight * p.x) for p in rest]
+        rest = [Sample(p.x, (p.target - a) / p.x, p.weight * abs(p.x)) for p in rest]
     return tuple(done)
 
 
 def correction(
-    form: ClosedForm, end: float, degree: int, q: Callable[[Any], Any] = lambda _: mp.mpf(1)
+    form: ClosedForm,
+    end: float,
+    degree: int,
+    q: Callable[[Any], Any] = lambda _: mp.mpf(1),
+    low: float = 0.0,
 ) -> tuple[float, ...]:
-    """P of ``degree`` in f = f0 + g P, g = x/q(x) (or (1 - w)/q(w)), on [0, end]; f0 rounded comes first."""
-    start = float(forms.limit(form))
+    """P of ``degree`` in f = f0 + g P, g = x/q(x) (or (1 - w)/q(w)), on [low, end]; f0, rounded, first."""
+    start, side = float(forms.limit(form)), -1 if form.point else 1
     samples: list[Sample] = []
-    for x in chebyshev(end, GRID):
-        f, g = forms.evaluate((form,), x)[0], abs(x - form.point) / q(x)
-        samples.append(Sample(x, (f - start) / g, g / f))
+    for x in chebyshev(end, GRID, low):
+        f, g = forms.evaluate((form,), x)[0], side * (x - form.point) / q(x)
+        samples.append(Sample(x, (f - start) / g, abs(g) / f))
     largest = max(abs(p.weight) for p in samples)
     return start, *rounded_minimax([p for p in samples if abs(p.weight) > NEGLIGIBLE * largest], degree)
 
@@ -144,7 +157,7 @@ def correction(
 def tables() -> dict[str, tuple[float, ...]]:
     """The coefficients in ``tables.py`` by their names, lowest power first."""
     with mp.workprec(BITS):
-        c3, c4, c5 = map(forms.stumpff_form, (3, 4, 5))
+        c3, c4, c5, c6 = map(forms.stumpff_form, (3, 4, 5, 6))
         d, e, log = forms.inverse_form(), forms.inverse_derivative_form(), forms.log_form()
         log_q = denominator(log, 1.0, 5, 6)
         inverse_q = denominator(d, INVERSE, 3, 3)
@@ -152,6 +165,10 @@ def tables() -> dict[str, tuple[float, ...]]:
             "C3_3": correction(c3, STUMPFF3, 6),
             "C4_5": correction(c4, STUMPFF5, 7),
             "C5_5": correction(c5, STUMPFF5, 7),
+            "C6_5": correction(c6, STUMPFF5, 7),
+            "C5_H": correction(c5, 0.0, 10, low=-HYPERBOLIC),
+            "C6_H": correction(c6, 0.0, 10, low=-HYPERBOLIC),
+            "P5": correction(forms.remainder_form(5), SIMILARITY, 16, low=-SIMILARITY),
             "INVERSE_Q": (*inverse_q, 1.0),
             "INVERSE_D": correction(d, INVERSE, 3, lambda x: horner((*inverse_q, 1), x)),
             "INVERSE_E": correction(e, INVERSE, 6, lambda x: horner((*inverse_q, 1), x) ** 2),

@@ -25,6 +25,8 @@ from .node import Operation as Operation
 from .node import Value as Value
 from .product import Product as Product
 from .s2 import S2 as S2
+from .similarity import Sim2 as Sim2
+from .similarity import Sim3 as Sim3
 from .vector import R1 as R1
 from .vector import R2 as R2
 from .vector import R3 as R3

@@ -28,8 +28,8 @@ def sampler(group: type[Group], arguments: Mapping[str, type[Manifold]]) -> Samp
 
 
 def _tangent(group: type[Group], draw: Draw, case: Case) -> np.ndarray:
-    """The case's rotation and offset; coordinates that are no angles have the case's spread."""
+    """The case's rotation and offset; coordinates that are no angles or scales have the case's spread."""
     asked = case if case.angle is not None else replace(case, angle=draw.uniform(0, TURN))
     spread = case.spread if case.offset is None else 1.0
-    size = [1.0 if "rad" in name else spread for name in group.form.tangent]
+    size = [spread if "[m" in name or "[s]" in name else 1.0 for name in group.form.tangent]
     return draw.tangent(group, asked) * np.array(size)

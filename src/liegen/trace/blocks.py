@@ -9,6 +9,8 @@ from liegen.manifolds import SO2, Node, Value
 from liegen.manifolds.form import GroupForm
 from liegen.manifolds.gal3_form import Gal3Form
 from liegen.manifolds.se23_form import SE23Form
+from liegen.manifolds.sim2_form import Sim2Form
+from liegen.manifolds.sim3_form import Sim3Form
 
 from .notation import IDENTITY, RESULT, Block, Part
 
@@ -24,6 +26,7 @@ I, ZERO, ONE, J = IDENTITY, Block("0"), Block("1"), Block("J")  # noqa: E741
 Ad, Jr, R, matrix, B = (partial(_of, head) for head in ("Ad", "Jr", "R", "matrix", "B"))
 Jr_inverse, Jl_inverse = partial(_of, "Jr^-1"), partial(_of, "Jl^-1")
 inverse, transpose, square, skew = (partial(_of, h) for h in ("inverse", "transpose", "square", "skew"))
+scale = partial(_of, "scale")
 product, total, quotient = (partial(_of, h) for h in ("product", "sum", "quotient"))
 row, column, unit_row, length = (partial(_of, h) for h in ("row", "column", "unit row", "length"))
 
@@ -89,6 +92,30 @@ _GALILEAN: Mapping[str, Blocks] = {
         column(ZERO, -product(transpose(matrix(0)), 2), ZERO, ONE),
     ),
 }
+_SIMILAR_PLANE: Mapping[str, Blocks] = {
+    "transform_from": (product(scale(0), R(0), row(I, product(J, 1), 1)), product(scale(0), R(0))),
+    "transform_to": (-row(I, product(J, RESULT), RESULT), quotient(transpose(R(0)), scale(0))),
+    "rotation": (row(ZERO, ONE, ZERO),),
+    "translation": (product(scale(0), R(0), row(I, ZERO, ZERO)),),
+    "scale": (product(RESULT, row(ZERO, ZERO, ONE)),),
+    "similarity": (
+        column(ZERO, ONE, ZERO),
+        column(quotient(transpose(matrix(0)), 2), ZERO, ZERO),
+        column(ZERO, ZERO, quotient(ONE, 2)),
+    ),
+}
+_SIMILAR_SPACE: Mapping[str, Blocks] = {
+    "transform_from": (product(scale(0), R(0), row(-skew(1), I, 1)), product(scale(0), R(0))),
+    "transform_to": (-row(-skew(RESULT), I, RESULT), quotient(transpose(R(0)), scale(0))),
+    "rotation": (row(I, ZERO, ZERO),),
+    "translation": (product(scale(0), R(0), row(ZERO, I, ZERO)),),
+    "scale": (product(RESULT, row(ZERO, ZERO, ONE)),),
+    "similarity": (
+        column(I, ZERO, ZERO),
+        column(ZERO, quotient(transpose(matrix(0)), 2), ZERO),
+        column(ZERO, ZERO, quotient(ONE, 2)),
+    ),
+}
 _VECTOR: Mapping[str, Blocks] = {
     "add": (I, I),
     "sub": (I, -I),
@@ -152,6 +179,9 @@ def charted(node: Node) -> bool:
 def _parts(node: Node) -> Mapping[str, Blocks]:
     """The table for the parts and the actions of the manifolds that a node is about."""
     forms = (_own(node).form, node.manifold.form)
+    for kind, table in ((Sim2Form, _SIMILAR_PLANE), (Sim3Form, _SIMILAR_SPACE)):
+        if any(isinstance(form, kind) for form in forms):
+            return table
     if any(form.name in ("SO2", "SE2") for form in forms):
         return _PLANE
     if any(isinstance(form, SE23Form) for form in forms):

@@ -12,6 +12,7 @@ from liegen.errors import DefinitionError
 from liegen.manifolds import Leaf, Node, Value, Vector
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
+from liegen.manifolds.similarity import Similarity
 
 from .formulas import show
 from .frame_declared import is_map, pieces
@@ -160,7 +161,7 @@ def _route(
         if form is None or moved.form.dim != form.space:
             continue
         turn, moves = p.path if rotation else f"{p.path}.rotation", not rotation and not free
-        pose = p.path if issubclass(p.manifold, Pose) else f"{p.path}.pose"
+        pose = p.path if issubclass(p.manifold, Pose | Similarity) else f"{p.path}.pose"
         if p.declared.names == way[::-1]:
             return f"{pose}.transform_from({text})" if moves else f"{turn} @ {text}"
         if p.declared.names == way:

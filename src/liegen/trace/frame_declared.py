@@ -14,6 +14,7 @@ from liegen.manifolds import S2, SO2, Calibration, Gal3, Manifold, Product, Valu
 from liegen.manifolds.extended import ExtendedPose
 from liegen.manifolds.pose import Pose
 from liegen.manifolds.rotation import Rotation
+from liegen.manifolds.similarity import Similarity
 
 from .frame_names import Frames, Kind, read_name
 
@@ -23,7 +24,7 @@ _FREE = frozenset(
     ("v", "a", "w", "g", "f", "u", "n", "velocity", "acceleration", "gravity", "force", "omega")
 )
 #: Vectors of these dimensions live in a frame: those of plane and space, and twists of groups in MAPS.
-_SPATIAL = (2, 3, 6, 9, 10)
+_SPATIAL = (2, 3, 4, 6, 7, 9, 10)
 #: Classes whose elements have two frames, with how a report describes them. They compose, invert and move
 #: vectors as poses do; an operation of their own, if they have any, needs a rule in frame_rules. The first
 #: entry that fits counts.
@@ -33,6 +34,7 @@ MAPS: Mapping[type[Manifold], str] = {
     Pose: "pose of {1} in {0}",
     ExtendedPose: "extended pose of {1} in {0}",
     Gal3: "event of {1} in {0}",
+    Similarity: "similarity from {1} to {0}",
 }
 
 

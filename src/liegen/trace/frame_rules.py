@@ -84,7 +84,7 @@ def _pose(s: Step) -> Framed:
     """A rotation and vectors in its outer frame: a position, then perhaps a velocity."""
     made, given = s.node.manifold.__name__, range(len(s.operands))
     for k, _ in enumerate(s.operands[1:], start=1):
-        if s.node.operands[k].manifold.form.dim == 1:  # the time
+        if s.node.operands[k].manifold.form.dim == 1:  # the time, the scale
             continue
         turned = ", ".join(f"{{0}} @ {{{i}}}" if i == k else f"{{{i}}}" for i in given)
         s.need((0, "outer"), (k, "frame"), ((0, "inner"), (k, "frame"), f"{made}({turned})"))
@@ -185,6 +185,7 @@ _MAPS: Mapping[str, Rule] = {
     "transform_from": _transform_from, "transform_to": _transform_to, "rotate": _rotate,
     "unrotate": _unrotate, "direction": _direction, "pose_of": _rotation, "position": _translation,
     "velocity": _velocity, "extended_pose": _pose, "event": _pose,
+    "similarity": _pose, "scale": _nothing,
 }  # fmt: skip
 _DIRECTIONS: Mapping[str, Rule] = {
     "direction": _direction, "vector": _unit_vector, "local": _same_frame_tangent, "retract": first
@@ -194,7 +195,7 @@ _PRODUCTS: Mapping[str, Rule] = {"part": _part, "product": _product}
 #: The rules of each class's operations. Of the rest, maps share one table, vectors another.
 _TABLES = ((S2, _DIRECTIONS), (Calibration, _CAMERAS), (Product, _PRODUCTS))
 #: Operations whose rule is that of what they make; all others have that of what they are applied to.
-_MAKE = ("exp", "pose", "direction", "product", "extended_pose", "event")
+_MAKE = ("exp", "pose", "direction", "product", "extended_pose", "event", "similarity")
 
 
 def rule(node: Node) -> Rule:

@@ -121,6 +121,7 @@ HEADS: Mapping[str, tuple[Layout, Layout]] = {
     "Chart": (Layout("Chart(#0)"), Layout(r"M_{#0}")),
     "Chart^-1": (Layout("Chart^-1(#0)"), Layout(r"M^{-1}_{#0}")),
     "velocity": (Layout("#0.velocity", ATOM, (ATOM,)), Layout(r"\mathrm{v}_{#0}")),
+    "scale": (Layout("#0.scale", ATOM, (ATOM,)), Layout(r"\mathrm{s}_{#0}")),
     "B": (Layout("B(#0)"), Layout("B_{#0}")),
     "unit row": (
         Layout("unit(#0)^T"),

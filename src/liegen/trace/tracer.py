@@ -34,7 +34,10 @@ class _Record:
 
 _record: ContextVar[_Record | None] = ContextVar("record", default=None)
 
-_NAMED = ("SO2", "SE2", "SO3", "SE3", "SE23", "NavState", "Gal3", "S2", "Cal3_S2", "Cal3DS2", "Cal3Bundler")
+_NAMED = (
+    "SO2", "SE2", "SO3", "SE3", "SE23", "NavState", "Gal3", "Sim2", "Sim3", "S2", "Cal3_S2", "Cal3DS2",
+    "Cal3Bundler",
+)  # fmt: skip
 _KNOWN = (*(f"R{n}" for n in range(1, 10)), *_NAMED)
 _MANIFOLDS = f"one of liegen's (R1 to R9, {', '.join(_NAMED)}) or class R12(R, dim=12)"
 

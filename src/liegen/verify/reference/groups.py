@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from . import extended, galilean
+from . import extended, galilean, similarity
 from .calls import Call, Rule, plain
 from .charts import space_in
 from .matrix import Element, Matrix, Vector, add, matvec, normalised, sub, transpose
@@ -65,8 +65,15 @@ def _transform_from(T: Matrix, p: Vector) -> Vector:
     return add(matvec(rotation_of(T), p), translation_of(T))
 
 
-def _transform_to(T: Matrix, p: Vector) -> Vector:
+def _transform_to(call: Call) -> Vector:
+    T, p = call.values
+    if _scaled(call):
+        return similarity.act_inverse(T, p)
     return matvec(transpose(rotation_of(T)), sub(p, translation_of(T)))
+
+
+def _scaled(call: Call) -> bool:
+    return call.operands[0].manifold.form.name in ("Sim2", "Sim3")
 
 
 def _unrotate(R: Matrix, v: Vector) -> Vector:
@@ -74,8 +81,10 @@ def _unrotate(R: Matrix, v: Vector) -> Vector:
 
 
 def _rotation(call: Call) -> Matrix:
-    """The rotation block: 2 x 2 of a pose of the plane, 3 x 3 of all other matrices."""
+    """The rotation: 2 x 2 of a pose of the plane, 3 x 3 of all other matrices."""
     (T,) = call.values
+    if _scaled(call):
+        return similarity.rotation_of(T)
     return rotation_of(T) if len(T) < 5 else extended.rotation_of(T)
 
 
@@ -121,5 +130,7 @@ OPERATIONS: Mapping[str, Rule] = {
     "velocity": _column("velocity"),
     "translation": plain(translation_of),
     "transform_from": plain(_transform_from),
-    "transform_to": plain(_transform_to),
+    "transform_to": _transform_to,
+    "similarity": plain(similarity.similar),
+    "scale": lambda call: (similarity.scale_of(call.values[0]),),
 }

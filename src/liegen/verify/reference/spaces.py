@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from . import extended, galilean, sphere
+from . import extended, galilean, similarity, sphere
 from .contract import GroupSpace, Space, Store
 from .logarithms import Branch, log_se2, log_se3, log_so2, log_so3
 from .matrix import (
@@ -124,6 +124,11 @@ def _hat_so2(angle: Number) -> Matrix:
     return ((mp.zero, -angle), (angle, mp.zero))
 
 
+def _turn_of(T: Matrix) -> Vector:
+    R = similarity.rotation_of(T)
+    return (R[0][0], R[1][0])
+
+
 _SO2 = _matrix_group(
     1, _load_so2, lambda R, _: (R[0][0], R[1][0]), transpose, lambda d: expm(_hat_so2(d[0])), log_so2
 )
@@ -169,6 +174,24 @@ _GAL3 = _matrix_group(
     galilean.inverse,
     galilean.exp,
     galilean.log,
+)  # fmt: skip
+_SIM2 = _matrix_group(
+    4,
+    lambda c: similarity.similar(_load_so2(c[:2]), c[2:4], c[4:]),
+    lambda T, _: (*_turn_of(T), *translation_of(T), similarity.scale_of(T)),
+    similarity.inverse,
+    lambda d: similarity.exp(_hat_so2(d[2]), d[:2], d[3]),
+    similarity.log_sim2,
+)
+_SIM3 = _matrix_group(
+    7,
+    lambda c: similarity.similar(load_so3(c[:4]), c[4:7], c[7:]),
+    lambda T, like: (
+        *store_so3(similarity.rotation_of(T), like), *translation_of(T), similarity.scale_of(T),
+    ),
+    similarity.inverse,
+    lambda d: similarity.exp(skew(d[:3]), d[3:6], d[6]),
+    similarity.log_sim3,
 )  # fmt: skip
 #: R^n under addition; its exponential and logarithm are the identity.
 _VECTORS = GroupSpace(
@@ -217,6 +240,8 @@ GROUPS: Mapping[str, GroupSpace] = {
     "SE23": _SE23,
     "NavState": _NAV_STATE,
     "Gal3": _GAL3,
+    "Sim2": _SIM2,
+    "Sim3": _SIM3,
     "R": _VECTORS,
 }
 SPACES: Mapping[str, Space] = {
