@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
 from liegen.algebra.factors import Adjoint
-from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, negated, product
+from liegen.algebra.linear import Chain, Matrix, Vector, diagonal, eye, negate, negated, product, scale
 
 from .turning import PoseFactors, RotationFactors, Turned, known_matrix
 
@@ -207,6 +207,10 @@ class GroupForm(ManifoldForm):
     def between_blocks(self) -> Rule:
         """d/da = -Ad(c^-1) with c = a^-1 b, d/db = I (micro Lie, eq. 81)."""
         return lambda c, _a, _b: (negated(self.Ad_inverse(c)), (eye(self.dim),))
+
+    def part_way(self, r: Coords, a: Scalar) -> Chain:
+        """The product a Jr(a r) Jr^-1(r) for a logarithm r."""
+        return (diagonal((a,) * self.dim), self.Jr(scale(a, r)), self.Jr_inv(r, principal=True))
 
     def local_between(self) -> tuple[Compute, Rule] | None:
         """Value and rule of z.local(x.between(y)) as one operation on (z, x, y), where that saves any.
