@@ -33,6 +33,7 @@ CANARY = 777.0
 
 def built(kernels: Sequence[Kernel], folder: Path, flags: Sequence[str]) -> ctypes.CDLL:
     """The C of the kernels, compiled without contraction to fused operations."""
+    folder.mkdir(exist_ok=True)
     for path, text in render(kernels, ["c"], package=PACKAGE, regenerate="liegen generate").items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")

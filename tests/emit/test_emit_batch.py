@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 from batch_tools import BUILDS, LAYOUTS, PACKED, built, call_batch
-from emit_kernels import examples
+from emit_kernels import bearing_range, examples
 from emit_tools import call_c, samples
 
 from liegen.kernel import Kernel
+from liegen.program import Program
 
 N = 19
 KERNELS = pytest.mark.parametrize("kernel", examples(), ids=lambda k: k.name)
@@ -90,6 +94,26 @@ def test_index_and_broadcast(demo: object, kernel: Kernel) -> None:
         _, got, _ = call_batch(demo, kernel, values, N, outof=outof, index=index, broadcast=[first])
         for name, array in wanted.items():
             same(kernel, got[name], array)
+
+
+def test_arguments_may_be_named_as_variables_of_the_batch(tmp_path: Path) -> None:
+    kernel = bearing_range()
+    names = dict(zip((a.name for a in kernel.arguments), ("n", "stream", "held"), strict=True))
+
+    def renamed(program: Program) -> Program:
+        inputs = tuple(replace(port, name=names[port.name]) for port in program.inputs)
+        return replace(program, inputs=inputs)
+
+    arguments = tuple(replace(a, name=names[a.name]) for a in kernel.arguments)
+    value, jacobians = renamed(kernel.value), renamed(kernel.jacobians)
+    other = replace(kernel, arguments=arguments, value=value, jacobians=jacobians)
+    values = samples(kernel, 6, (N,))
+    _, wanted, _ = call_batch(built([kernel], tmp_path / "a", []), kernel, values, N)
+    _, got, _ = call_batch(
+        built([other], tmp_path / "b", []), other, {names[k]: v for k, v in values.items()}, N
+    )
+    for name, array in wanted.items():
+        np.testing.assert_array_equal(got[name], array)
 
 
 def test_status_may_be_null(demo: object) -> None:

@@ -37,6 +37,11 @@ SYNTAX = Syntax(
     sincos="lanes_sincos({0}, &{1}, &{2})",
 )  # fmt: skip
 
+#: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
+BATCH_NAMES = words("""
+    LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
+    lanes_finish block_value block_jacobians ptrdiff_t uint8_t
+""").union(SYNTAX.calls.values())
 _FORMATS = {
     "scalar": "const lanes {0} = {1};",
     "condition": "const lanes_mask {0} = {1};",

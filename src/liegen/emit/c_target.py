@@ -11,7 +11,7 @@ from liegen.errors import DefinitionError
 from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
-from .c_batch import batch_name, printed_batch
+from .c_batch import BATCH_NAMES, batch_name, printed_batch
 from .elementary_text import elementary_text
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .printer import Assignment, Listing, Store, print_program
@@ -242,7 +242,9 @@ TARGET = Target(
     public=symbols,
     keywords={"C": C_KEYWORDS, "C++": CPP_KEYWORDS},
     # "linux" and "unix" are macros of compilers there.
-    reserved=words("status NULL NAN INFINITY linux unix").union(SYNTAX.calls.values()),
+    reserved=words("status NULL NAN INFINITY linux unix").union(
+        SYNTAX.calls.values(), SINGLE.syntax.calls.values(), BATCH_NAMES
+    ),
     files=HEADERS,
     factor_sheets=(
         Sheet("c/factor.h.j2", "c/{factor}.h"),
