@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .generate import Request, generate, rendered, requested
-from .shared import Convention, source_argument
+from .shared import source_argument
 
 if TYPE_CHECKING:
     from liegen.emit import TreeReport
@@ -84,10 +84,7 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    convention = Convention(given["chart"], given["layout"], given["normalise"])
-    what = {key: given[key] for key in ("names", "targets", "package", "major", "groups")}
-    weighting = {key: given[key] for key in ("noise", "loss", "mode")}
-    return replace(requested(original, **what, convention=convention, **weighting), source=place)
+    return replace(requested(given), source=place)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:

@@ -6,10 +6,10 @@ import importlib
 import re
 import shlex
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 TARGETS = ("numpy", "c")
 MAJORS = ("row", "col")
+SCALARS = ("double", "float")
 #: Stands for the output folder in the headers: files are the same wherever they are written.
 ANYWHERE = "DIR"
 
@@ -44,12 +45,14 @@ class Request:
     names: tuple[str, ...]
     targets: tuple[str, ...]
     package: str
+    groups: tuple[str, ...]
+    convention: Convention
     major: str
-    groups: tuple[str, ...] = ()
-    convention: Convention = Convention()  # noqa: RUF009  (a frozen value)
-    noise: str | None = None
-    loss: str | None = None
-    mode: str | None = None
+    scalar: str
+    noise: str | None
+    loss: str | None
+    mode: str | None
+    gauss_newton: bool
 
     def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
         """The factors that are asked for, of ``source``, whitened and robust as asked for."""
@@ -65,8 +68,9 @@ class Request:
         words += ["-o", directory]
         words += [] if self.package == default_package(source, self.groups) else ["--package", self.package]
         words += [] if self.major == MAJORS[0] else ["--major", self.major]
+        words += [] if self.scalar == SCALARS[0] else ["--scalar", self.scalar]
         options = {**vars(self.convention), "noise": self.noise, "loss": self.loss, "mode": self.mode}
-        for option, value in options.items():
+        for option, value in {**options, "gauss-newton": self.gauss_newton}.items():
             words += [f"--{option}", *([] if value is True else [value])] if value else []
         return shlex.join(words)
 
@@ -86,28 +90,27 @@ def default_package(source: str | None, groups: Sequence[str] = ()) -> str:
     return f"{name}_gen"
 
 
-def requested(
-    source: str | None,
-    names: Sequence[str],
-    targets: Sequence[str],
-    package: str | None,
-    major: str,
-    groups: Sequence[str] = (),
-    convention: Convention = Convention(),  # noqa: B008  (a frozen value)
-    noise: str | None = None,
-    loss: str | None = None,
-    mode: str | None = None,
-) -> Request:
-    """Fill in the defaults."""
-    wanted = tuple(t for t in TARGETS if not targets or t in targets)
-    called = package or default_package(source, groups)
-    unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
-    return Request(source, unique[0], wanted, called, major, unique[1], convention, noise, loss, mode)
+def requested(given: Mapping[str, Any]) -> Request:
+    """From the options of the command by name, with the defaults filled in."""
+    source, groups = given["source"], tuple(dict.fromkeys(given["groups"]))
+    return Request(
+        source=source,
+        names=tuple(dict.fromkeys(given["names"])),
+        targets=tuple(t for t in TARGETS if not given["targets"] or t in given["targets"]),
+        package=given["package"] or default_package(source, groups),
+        groups=groups,
+        convention=Convention(given["chart"], given["layout"], given["normalise"]),
+        **{name: given[name] for name in ("major", "scalar", "noise", "loss", "mode", "gauss_newton")},
+    )
 
 
-def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
-    """The kernels; each is derived at its first use."""
-    return [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+def derived(functions: Sequence[AnyFunction], *, gauss_newton: bool = False) -> list[Kernel]:
+    """The kernels, those of Gauss-Newton terms behind their factors; each is derived at its first use."""
+    return [
+        kernel
+        for f in tracked(functions, "derive", lambda f: f.name)
+        for kernel in (f.kernel, *([f.gauss_newton_kernel] if gauss_newton else []))
+    ]
 
 
 def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str) -> dict[str, str]:
@@ -115,7 +118,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
     from liegen.emit import check_names, render
     from liegen.verify import check_finite
 
-    kernels = derived(functions)
+    kernels = derived(functions, gauss_newton=request.gauss_newton)
     check_names(kernels, request.package)
     for function in functions:
         check_finite(function)
@@ -125,6 +128,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
         package=request.package,
         regenerate=regenerate,
         layout=request.major,
+        scalar=request.scalar,
     )
 
 
@@ -150,40 +154,33 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
     "--major", type=click.Choice(MAJORS), default=MAJORS[0], show_default=True,
     help="Order of matrices in C: col adds functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
+@click.option(
+    "--scalar", type=click.Choice(SCALARS), default=SCALARS[0], show_default=True,
+    help="float adds C functions in single precision (suffix _f32).",
+)  # fmt: skip
 @convention_options
 @noise_options
-def generate(
-    source: str | None,
-    names: tuple[str, ...],
-    groups: tuple[str, ...],
-    targets: tuple[str, ...],
-    output: str,
-    package: str | None,
-    major: str,
-    chart: str | None,
-    layout: str | None,
-    normalise: bool,
-    noise: str | None,
-    loss: str | None,
-    mode: str | None,
-) -> None:
+@click.option(
+    "--gauss-newton", is_flag=True,
+    help="Also functions NAME_gauss_newton: cost, gradient and the blocks of J^T J, without storing J.",
+)  # fmt: skip
+def generate(output: str, **given: Any) -> None:
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    convention = Convention(chart, layout, normalise)
-    request = requested(source, names, targets, package, major, groups, convention, noise, loss, mode)
-    functions = request.chosen(source)
+    request = requested(given)
+    functions = request.chosen(request.source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]
-    derived(functions)
+    kernels = derived(functions, gauss_newton=request.gauss_newton)
     times.append(time.perf_counter())
     files = rendered(request, functions, request.header)
     times.append(time.perf_counter())
     done = write_tree(files, Path(output))
     table(
         ("factor", "operations", "with Jacobians"),
-        [_row(f.kernel) for f in functions],
+        [_row(kernel) for kernel in kernels],
         right=(1, 2),
     )
     click.echo()
