@@ -133,3 +133,15 @@ def docstring(lines: Sequence[str], indent: int) -> str:
     body = "\n".join(f"{pad}{line}".rstrip() for line in safe).lstrip()
     end = f"\n{pad}" if len(safe) > 1 else ""
     return f'"""{body}{end}"""'
+
+
+def c_string(text: str) -> str:
+    """A C string literal, one line of text a line."""
+    lines = [_escaped(line) for line in text.split("\n")]
+    return "\n    ".join(f'"{line}"' for line in [*(f"{line}\\n" for line in lines[:-1]), lines[-1]])
+
+
+def _escaped(line: str) -> str:
+    plain = {ord(c): f"\\{c}" for c in '"\\?'}  # ?: no trigraphs
+    escaped = line.translate(plain)
+    return "".join(c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode()) for c in escaped)

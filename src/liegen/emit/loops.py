@@ -1,0 +1,225 @@
+"""The loops that NumPy calls: C around the batch function of a factor, for arrays of any strides.
+
+They know NumPy's calling convention for generalised ufuncs (``PyUFuncGenericFunction`` in NumPy's C API) but
+include none of its headers. What NumPy must be told (loops, types, name, text, signature) is static data of
+the same shared object, so that it lives as long as the code does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from liegen.kernel import Kernel
+from liegen.program import Port
+
+from .header import closing, doc_lines
+from .target import Options
+from .templates import lay_out
+
+#: The number of C's int in NumPy's table of types.
+INT = 5
+
+
+@dataclass(frozen=True)
+class Method:
+    """What a compiled factor offers as one gufunc: ``status`` gives a bit mask instead of arrays."""
+
+    name: str
+    title: str
+    inputs: tuple[Port, ...]
+    outputs: tuple[Port, ...]
+
+    @property
+    def signature(self) -> str:
+        """``(7),(7),(7)->(6),(6,6),(6,6)``."""
+        left, right = (
+            ",".join(f"({','.join(map(str, port.shape))})" for port in ports)
+            for ports in (self.inputs, self.outputs)
+        )
+        return f"{left}->{right}"
+
+
+@dataclass(frozen=True)
+class Number:
+    """A type of number: its name in C, its number in NumPy's table, the suffix of the functions on it."""
+
+    type: str
+    code: int
+    suffix: str
+
+
+#: In the order in which NumPy tries them: it takes the first that all inputs can be cast to safely.
+NUMBERS = (Number("double", 12, ""),)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A loop over one type of number, as statements."""
+
+    name: str
+    type: str
+    spacings: tuple[str, ...]
+    steady: str
+    whole: tuple[str, ...]
+    single: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Operand:
+    """An array of a gufunc: its place among the arguments and where its steps are."""
+
+    position: int
+    rows: int
+    columns: int
+    row_step: str
+    column_step: str
+    written: bool
+
+    @property
+    def size(self) -> int:
+        return self.rows * self.columns
+
+
+def methods(kernel: Kernel) -> tuple[Method, ...]:
+    """``value``, ``jacobians`` where there are variables, and ``status``."""
+    inputs = tuple(Port(a.name, a.shape) for a in kernel.arguments)
+    offered = [Method("value", kernel.name, inputs, kernel.value.outputs)]
+    if kernel.variables:
+        offered.append(Method("jacobians", f"{kernel.name}_jacobians", inputs, kernel.jacobians.outputs))
+    return (*offered, Method("status", f"{kernel.name}_status", inputs, (Port("status", ()),)))
+
+
+def symbol(kernel_name: str, method: str, package: str) -> str:
+    """The name of the ``gufunc`` structure in the shared object."""
+    return f"{package}_{kernel_name}_{method}_gufunc"
+
+
+def loops_source(kernel: Kernel, options: Options) -> str:
+    """The C of all loops of a factor."""
+    return lay_out(
+        "runtime/loops.c.j2",
+        {
+            "header": (f"{kernel.name}: loops for NumPy", "", *closing(options)),
+            "factor": kernel.name,
+            "methods": [_printed(kernel, method, options.package) for method in methods(kernel)],
+        },
+    )
+
+
+def _printed(kernel: Kernel, method: Method, package: str) -> dict[str, object]:
+    numbers = NUMBERS
+    width = len(method.inputs)
+    codes = [[n.code] * width + [INT if method.name == "status" else n.code] * len(method.outputs) for n in numbers]
+    make = _status_loop if method.name == "status" else _loop
+    return {
+        "name": method.name,
+        "symbol": symbol(kernel.name, method.name, package),
+        "title": method.title,
+        "doc": "\n".join(doc_lines(kernel)),
+        "signature": method.signature,
+        "inputs": width,
+        "outputs": len(method.outputs),
+        "data": ["NULL"] * len(numbers),
+        "types": [code for row in codes for code in row],
+        "loops": [make(kernel, method, number, package) for number in numbers],
+    }
+
+
+def _operands(method: Method) -> tuple[_Operand, ...]:
+    ports = [*method.inputs, *method.outputs]
+    at = len(ports)
+    made: list[_Operand] = []
+    for position, port in enumerate(ports):
+        rows, columns = (*port.shape, 1, 1)[:2]
+        steps = [f"steps[{at + k}]" for k in range(len(port.shape))]
+        row, column = (*steps, "0", "0")[:2]
+        made.append(_Operand(position, rows, columns, row, column, position >= len(method.inputs)))
+        at += len(port.shape)
+    return tuple(made)
+
+
+def _array(o: _Operand, number: Number, package: str, data: str, step: str, spacing: str) -> str:
+    kind, index = ("out", "") if o.written else ("in", ", NULL")
+    return f"const {package}_{kind}{number.suffix} v{o.position} = {{{data}, {step}, {spacing}{index}}};"
+
+
+def _call(kernel: Kernel, number: Number, package: str, count: str, passed: Sequence[str]) -> str:
+    return f"{package}_{kernel.name}_batch{number.suffix}({', '.join([count, *passed, 'NULL'])})"
+
+
+def _nothing(kernel: Kernel, method: Method, number: Number, package: str) -> tuple[list[str], list[str]]:
+    """Declarations and names of the outputs that a method leaves out."""
+    left_out = len(kernel.jacobians.outputs) - len(method.outputs)
+    if not left_out:
+        return [], []
+    return [f"const {package}_out{number.suffix} none = {{NULL, 0, 0}};"], ["none"] * left_out
+
+
+def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
+    operands = _operands(method)
+    declared, none = _nothing(kernel, method, number, package)
+    passed = [*(f"v{o.position}" for o in operands), *none]
+    whole = [
+        _array(
+            o, number, package,
+            f"({'' if o.written else 'const '}{number.type} *)args[{o.position}]",
+            f"steps[{o.position}] / size", f"c{o.position} / size",
+        )
+        for o in operands
+    ]  # fmt: skip
+    return Loop(
+        name=f"{method.name}_{number.type}",
+        type=number.type,
+        spacings=tuple(
+            f"const ptrdiff_t c{o.position} = spacing({o.rows}, {o.columns}, {o.row_step}, {o.column_step}, size);"
+            for o in operands
+        ),
+        steady=" && ".join(f"steady(c{o.position}, steps[{o.position}], size)" for o in operands),
+        whole=(*whole, *declared, f"{_call(kernel, number, package, 'n', passed)};"),
+        single=(
+            *_copies(operands, number, package),
+            *declared,
+            f"{_call(kernel, number, package, '1', passed)};",
+            *(_copy(o, written=True) for o in operands if o.written),
+        ),
+    )
+
+
+def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
+    """The bits of the requirements that an element violates: what the batch function returns for it alone."""
+    value = Method("value", kernel.name, method.inputs, kernel.value.outputs)
+    operands = tuple(o for o in _operands(value))
+    inputs = [o for o in _operands(method) if not o.written]
+    declared, none = _nothing(kernel, value, number, package)
+    passed = [*(f"v{o.position}" for o in operands), *none]
+    target = f"args[{len(inputs)}] + k * steps[{len(inputs)}]"
+    return Loop(
+        name=f"{method.name}_{number.type}",
+        type=number.type,
+        spacings=(),
+        steady="",
+        whole=(),
+        single=(
+            *_copies((*inputs, *(o for o in operands if o.written)), number, package),
+            *declared,
+            f"const int status = {_call(kernel, number, package, '1', passed)};",
+            f"memcpy({target}, &status, sizeof status);",
+        ),
+    )
+
+
+def _copies(operands: Sequence[_Operand], number: Number, package: str) -> list[str]:
+    """Local packed arrays of one element; those of inputs are filled."""
+    lines: list[str] = []
+    for o in operands:
+        lines.append(f"{number.type} m{o.position}[{o.size}];")
+        lines.append(_array(o, number, package, f"m{o.position}", str(o.size), "1"))
+    return [*lines, *(_copy(o, written=False) for o in operands if not o.written)]
+
+
+def _copy(o: _Operand, *, written: bool) -> str:
+    local = f"(char *)m{o.position}, {o.columns} * size, size"
+    array = f"args[{o.position}] + k * steps[{o.position}], {o.row_step}, {o.column_step}"
+    to, source = (array, local) if written else (local, array)
+    return f"move({to}, {source}, {o.rows}, {o.columns}, size);"
