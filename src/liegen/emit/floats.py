@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from liegen.kernel import Kernel
 from liegen.program import Program
 
+from .numpy_target import SYNTAX as ARRAYS
 from .printer import print_program
 from .syntax import COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
 from .target import scalar_names
@@ -37,7 +38,7 @@ _IMPORTS = (*sorted(SYNTAX.calls.values()), "inf", "nan")
 
 @dataclass(frozen=True)
 class Function:
-    """A function of one program: a tuple of floats for each argument in, for each output out.
+    """A function of one program: a list of floats for each argument of a call in, for each output out.
 
     It returns None outside of the domain.
     """
@@ -50,13 +51,19 @@ class Function:
     results: tuple[tuple[str, ...], ...]
 
 
-def _function(name: str, kernel: Kernel, program: Program) -> Function:
+def unpacked(kernel: Kernel) -> str:
+    """What the arguments of a call are assigned to: ``(x_qx, ...,), (z_qx, ...,),``."""
     names = iter(scalar_names(kernel))
-    groups = [[next(names) for _ in range(a.size)] for a in kernel.arguments]
+    groups = {a.name: [next(names) for _ in range(a.size)] for a in kernel.arguments}
+    called = [groups[a.name] for a in (*kernel.positional, *kernel.keywords)]
+    return "".join(f"({', '.join(group)},), " for group in called).rstrip()
+
+
+def _function(name: str, kernel: Kernel, program: Program) -> Function:
     listing = print_program(program, SYNTAX, scalar_names(kernel))
     return Function(
         name=name,
-        unpacked="".join(f"({', '.join(group)},), " for group in groups).rstrip(),
+        unpacked=unpacked(kernel),
         guard=tuple(f"{a.name} = {a.text}" for a in listing.guard),
         invalid=" or ".join(f"not ({condition})" for condition in listing.conditions),
         body=tuple(f"{a.name} = {a.text}" for a in listing.body),
@@ -70,3 +77,14 @@ def floats_source(kernel: Kernel) -> str:
     if kernel.variables:
         functions.append(_function("jacobians", kernel, kernel.jacobians))
     return lay_out("runtime/floats.py.j2", {"imports": _IMPORTS, "functions": functions})
+
+
+def conditions_source(kernel: Kernel) -> str:
+    """A Python module whose ``conditions`` says, on arrays of components, which requirements hold."""
+    listing = print_program(kernel.value, ARRAYS, scalar_names(kernel))
+    names = {
+        "unpacked": unpacked(kernel),
+        "guard": [f"{a.name} = {a.text}" for a in listing.guard],
+        "conditions": listing.conditions,
+    }
+    return lay_out("runtime/conditions.py.j2", names)

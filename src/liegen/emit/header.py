@@ -7,6 +7,7 @@ from inspect import cleandoc
 from textwrap import wrap
 
 from liegen.kernel import Argument, Kernel, Output
+from liegen.program import Program
 
 from .target import Options
 
@@ -96,6 +97,27 @@ def package_header(kernels: Sequence[Kernel], options: Options) -> tuple[str, ..
     ]
     lines += _section("Operations", counts)
     return tuple(line.rstrip() for line in [*lines, "", *closing(options)])
+
+
+def array_text(shape: Sequence[int]) -> str:
+    """``(..., 6, 6)``."""
+    return f"(..., {', '.join(map(str, shape))})"
+
+
+def interface_doc(kernel: Kernel, program: Program) -> tuple[str, ...]:
+    """The docstring of a Python function on arrays: what it computes, arguments, results, domain."""
+    meanings = {o.name: storage_text(o) for o in kernel.outputs}
+    meanings |= {name: meaning for name, _, meaning in jacobian_texts(kernel)}
+    lines = doc_lines(kernel)
+    if len(program.outputs) > len(kernel.outputs):
+        lines += ["", "With the Jacobians by the tangent of every variable."]
+    lines += ["", "Arguments:"]
+    lines += [f"    {a.name}: {array_text(a.shape)} {argument_text(a)}" for a in kernel.arguments]
+    lines += ["", "Returns:"]
+    lines += [f"    {port.name}: {array_text(port.shape)} {meanings[port.name]}" for port in program.outputs]
+    if program.requirements:
+        lines += ["", "NaN outside of the domain:", *(f"    {r.message}" for r in program.requirements)]
+    return tuple(lines)
 
 
 def _wrapped(line: str) -> list[str]:

@@ -42,15 +42,16 @@ class Method:
 
 @dataclass(frozen=True)
 class Number:
-    """A type of number: its name in C, its number in NumPy's table, the suffix of the functions on it."""
+    """A type of number: its names in C and NumPy, NumPy's number for it, the suffix of its functions."""
 
     type: str
+    dtype: str
     code: int
     suffix: str
 
 
 #: In the order in which NumPy tries them: it takes the first that all inputs can be cast to safely.
-NUMBERS = (Number("double", 12, ""),)
+NUMBERS = (Number("double", "float64", 12, ""),)
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,8 @@ class _Operand:
 
 
 def methods(kernel: Kernel) -> tuple[Method, ...]:
-    """``value``, ``jacobians`` where there are variables, and ``status``."""
-    inputs = tuple(Port(a.name, a.shape) for a in kernel.arguments)
+    """``value``, ``jacobians`` where there are variables, and ``status``; inputs in the order of a call."""
+    inputs = tuple(Port(a.name, a.shape) for a in (*kernel.positional, *kernel.keywords))
     offered = [Method("value", kernel.name, inputs, kernel.value.outputs)]
     if kernel.variables:
         offered.append(Method("jacobians", f"{kernel.name}_jacobians", inputs, kernel.jacobians.outputs))
@@ -148,18 +149,18 @@ def _call(kernel: Kernel, number: Number, package: str, count: str, passed: Sequ
     return f"{package}_{kernel.name}_batch{number.suffix}({', '.join([count, *passed, 'NULL'])})"
 
 
-def _nothing(kernel: Kernel, method: Method, number: Number, package: str) -> tuple[list[str], list[str]]:
-    """Declarations and names of the outputs that a method leaves out."""
-    left_out = len(kernel.jacobians.outputs) - len(method.outputs)
-    if not left_out:
-        return [], []
-    return [f"const {package}_out{number.suffix} none = {{NULL, 0, 0}};"], ["none"] * left_out
+def _passed(kernel: Kernel, method: Method, number: Number, package: str) -> tuple[list[str], list[str]]:
+    """What the batch function is given, in its order, and a declaration for the outputs that are left out."""
+    names = [port.name for port in (*method.inputs, *method.outputs)]
+    taken = [*(a.name for a in kernel.arguments), *(port.name for port in kernel.jacobians.outputs)]
+    passed = [f"v{names.index(name)}" if name in names else "none" for name in taken]
+    declared = [f"const {package}_out{number.suffix} none = {{NULL, 0, 0}};"] if "none" in passed else []
+    return declared, passed
 
 
 def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
     operands = _operands(method)
-    declared, none = _nothing(kernel, method, number, package)
-    passed = [*(f"v{o.position}" for o in operands), *none]
+    declared, passed = _passed(kernel, method, number, package)
     whole = [
         _array(
             o, number, package,
@@ -178,7 +179,7 @@ def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
         steady=" && ".join(f"steady(c{o.position}, steps[{o.position}], size)" for o in operands),
         whole=(*whole, *declared, f"{_call(kernel, number, package, 'n', passed)};"),
         single=(
-            *_copies(operands, number, package),
+            *_local(operands, number, package),
             *declared,
             f"{_call(kernel, number, package, '1', passed)};",
             *(_copy(o, written=True) for o in operands if o.written),
@@ -189,11 +190,9 @@ def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
 def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
     """The bits of the requirements that an element violates: what the batch function returns for it alone."""
     value = Method("value", kernel.name, method.inputs, kernel.value.outputs)
-    operands = tuple(o for o in _operands(value))
-    inputs = [o for o in _operands(method) if not o.written]
-    declared, none = _nothing(kernel, value, number, package)
-    passed = [*(f"v{o.position}" for o in operands), *none]
-    target = f"args[{len(inputs)}] + k * steps[{len(inputs)}]"
+    inputs = len(method.inputs)
+    declared, passed = _passed(kernel, value, number, package)
+    target = f"args[{inputs}] + k * steps[{inputs}]"
     return Loop(
         name=f"{method.name}_{number.type}",
         type=number.type,
@@ -201,7 +200,7 @@ def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -
         steady="",
         whole=(),
         single=(
-            *_copies((*inputs, *(o for o in operands if o.written)), number, package),
+            *_local(_operands(value), number, package),
             *declared,
             f"const int status = {_call(kernel, number, package, '1', passed)};",
             f"memcpy({target}, &status, sizeof status);",
@@ -209,7 +208,7 @@ def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -
     )
 
 
-def _copies(operands: Sequence[_Operand], number: Number, package: str) -> list[str]:
+def _local(operands: Sequence[_Operand], number: Number, package: str) -> list[str]:
     """Local packed arrays of one element; those of inputs are filled."""
     lines: list[str] = []
     for o in operands:
