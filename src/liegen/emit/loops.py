@@ -8,11 +8,12 @@ the same shared object, so that it lives as long as the code does.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from liegen.kernel import Kernel
 from liegen.program import Port
 
+from .c_batch import batch_name
 from .header import closing, doc_lines
 from .target import Options
 from .templates import lay_out
@@ -23,12 +24,18 @@ INT = 5
 
 @dataclass(frozen=True)
 class Method:
-    """What a compiled factor offers as one gufunc: ``status`` gives a bit mask instead of arrays."""
+    """What a compiled factor offers as one gufunc: ``status`` gives a bit mask instead of arrays.
+
+    ``function`` is the C function of batches that it calls, without the package's prefix; ``taken`` are the
+    names of that function's arguments and outputs, in its order. Outputs that the method lacks are NULL.
+    """
 
     name: str
     title: str
     inputs: tuple[Port, ...]
     outputs: tuple[Port, ...]
+    function: str
+    taken: tuple[str, ...]
 
     @property
     def signature(self) -> str:
@@ -85,10 +92,15 @@ class _Operand:
 def methods(kernel: Kernel) -> tuple[Method, ...]:
     """``value``, ``jacobians`` where there are variables, and ``status``; inputs in the order of a call."""
     inputs = tuple(Port(a.name, a.shape) for a in (*kernel.positional, *kernel.keywords))
-    offered = [Method("value", kernel.name, inputs, kernel.value.outputs)]
+    taken = (*(a.name for a in kernel.arguments), *(port.name for port in kernel.jacobians.outputs))
+
+    def method(name: str, title: str, outputs: tuple[Port, ...]) -> Method:
+        return Method(name, title, inputs, outputs, batch_name(kernel), taken)
+
+    offered = [method("value", kernel.name, kernel.value.outputs)]
     if kernel.variables:
-        offered.append(Method("jacobians", f"{kernel.name}_jacobians", inputs, kernel.jacobians.outputs))
-    return (*offered, Method("status", f"{kernel.name}_status", inputs, (Port("status", ()),)))
+        offered.append(method("jacobians", f"{kernel.name}_jacobians", kernel.jacobians.outputs))
+    return (*offered, method("status", f"{kernel.name}_status", (Port("status", ()),)))
 
 
 def symbol(kernel_name: str, method: str, package: str) -> str:
@@ -109,10 +121,12 @@ def loops_source(kernel: Kernel, options: Options) -> str:
 
 
 def _printed(kernel: Kernel, method: Method, package: str) -> dict[str, object]:
-    numbers = NUMBERS
     width = len(method.inputs)
-    codes = [[n.code] * width + [INT if method.name == "status" else n.code] * len(method.outputs) for n in numbers]
-    make = _status_loop if method.name == "status" else _loop
+    status = method.name == "status"
+    codes = [[n.code] * width + [INT if status else n.code] * len(method.outputs) for n in NUMBERS]
+    loops = [
+        _status_loop(kernel, method, n, package) if status else _loop(method, n, package) for n in NUMBERS
+    ]
     return {
         "name": method.name,
         "symbol": symbol(kernel.name, method.name, package),
@@ -121,9 +135,9 @@ def _printed(kernel: Kernel, method: Method, package: str) -> dict[str, object]:
         "signature": method.signature,
         "inputs": width,
         "outputs": len(method.outputs),
-        "data": ["NULL"] * len(numbers),
+        "data": ["NULL"] * len(NUMBERS),
         "types": [code for row in codes for code in row],
-        "loops": [make(kernel, method, number, package) for number in numbers],
+        "loops": loops,
     }
 
 
@@ -145,22 +159,19 @@ def _array(o: _Operand, number: Number, package: str, data: str, step: str, spac
     return f"const {package}_{kind}{number.suffix} v{o.position} = {{{data}, {step}, {spacing}{index}}};"
 
 
-def _call(kernel: Kernel, number: Number, package: str, count: str, passed: Sequence[str]) -> str:
-    return f"{package}_{kernel.name}_batch{number.suffix}({', '.join([count, *passed, 'NULL'])})"
-
-
-def _passed(kernel: Kernel, method: Method, number: Number, package: str) -> tuple[list[str], list[str]]:
-    """What the batch function is given, in its order, and a declaration for the outputs that are left out."""
+def _call(method: Method, number: Number, package: str, count: str) -> tuple[list[str], str]:
+    """A declaration for the outputs that are left out, if any, and the call."""
     names = [port.name for port in (*method.inputs, *method.outputs)]
-    taken = [*(a.name for a in kernel.arguments), *(port.name for port in kernel.jacobians.outputs)]
-    passed = [f"v{names.index(name)}" if name in names else "none" for name in taken]
+    passed = [f"v{names.index(name)}" if name in names else "none" for name in method.taken]
     declared = [f"const {package}_out{number.suffix} none = {{NULL, 0, 0}};"] if "none" in passed else []
-    return declared, passed
+    function = f"{package}_{method.function}{number.suffix}"
+    return declared, f"{function}({', '.join([count, *passed, 'NULL'])});"
 
 
-def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
+def _loop(method: Method, number: Number, package: str) -> Loop:
     operands = _operands(method)
-    declared, passed = _passed(kernel, method, number, package)
+    declared, whole_call = _call(method, number, package, "n")
+    _, single_call = _call(method, number, package, "1")
     whole = [
         _array(
             o, number, package,
@@ -173,15 +184,16 @@ def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
         name=f"{method.name}_{number.type}",
         type=number.type,
         spacings=tuple(
-            f"const ptrdiff_t c{o.position} = spacing({o.rows}, {o.columns}, {o.row_step}, {o.column_step}, size);"
+            f"const ptrdiff_t c{o.position} = "
+            f"spacing({o.rows}, {o.columns}, {o.row_step}, {o.column_step}, size);"
             for o in operands
         ),
         steady=" && ".join(f"steady(c{o.position}, steps[{o.position}], size)" for o in operands),
-        whole=(*whole, *declared, f"{_call(kernel, number, package, 'n', passed)};"),
+        whole=(*whole, *declared, whole_call),
         single=(
             *_local(operands, number, package),
             *declared,
-            f"{_call(kernel, number, package, '1', passed)};",
+            single_call,
             *(_copy(o, written=True) for o in operands if o.written),
         ),
     )
@@ -189,9 +201,9 @@ def _loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
 
 def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
     """The bits of the requirements that an element violates: what the batch function returns for it alone."""
-    value = Method("value", kernel.name, method.inputs, kernel.value.outputs)
+    value = replace(method, outputs=kernel.value.outputs)
     inputs = len(method.inputs)
-    declared, passed = _passed(kernel, value, number, package)
+    declared, call = _call(value, number, package, "1")
     target = f"args[{inputs}] + k * steps[{inputs}]"
     return Loop(
         name=f"{method.name}_{number.type}",
@@ -202,7 +214,7 @@ def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -
         single=(
             *_local(_operands(value), number, package),
             *declared,
-            f"const int status = {_call(kernel, number, package, '1', passed)};",
+            f"const int status = {call}",
             f"memcpy({target}, &status, sizeof status);",
         ),
     )

@@ -137,9 +137,7 @@ def _argument(kernel: Kernel, a: Argument) -> str:
     return f'("{a.name}", {flat}, {a.size})'
 
 
-def _interface(
-    kernel: Kernel, program: Program, name: str, private: str, record: str
-) -> Interface:
+def _interface(kernel: Kernel, program: Program, name: str, private: str, record: str) -> Interface:
     typed = [f"{a.name}: npt.ArrayLike" for a in kernel.positional]
     typed += ["*"] if kernel.keywords else []
     typed += [f"{a.name}: npt.ArrayLike" for a in kernel.keywords]
@@ -165,9 +163,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
     interfaces = [_interface(kernel, kernel.value, kernel.name, "_value", alone)]
     if kernel.variables:
         functions.append(_function("_jacobians", kernel, kernel.jacobians))
-        interfaces.append(
-            _interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians")
-        )
+        interfaces.append(_interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians"))
     lines = [line for f in functions for line in (*f.statements, *f.stores)]
     return {
         "header": kernel_header(kernel, options),

@@ -16,13 +16,15 @@ from liegen.native import compile_shared, compiler_version, find_compiler, proce
 from .cache import SUFFIX, Refused, cache_folder, find, install, opened, private_folder
 from .source import Source
 
-#: For this machine's processor; no libm call sets errno, no unused arm of a select traps.
-FLAGS = ("-std=c99", "-O2", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-fno-trapping-math")
+#: No libm call sets errno, no unused arm of a select traps.
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=fast", "-fno-math-errno", "-fno-trapping-math")
+#: For this machine's processor; left out where a compiler does not know it.
+NATIVE = ("-march=native",)
 
 
 def cache_key(source: Source, command: tuple[str, ...]) -> str:
     """What decides on the machine code: the C, the compiler and its version, the flags, the processor."""
-    parts = [dict(source.c), command, compiler_version(command), FLAGS, processor()]
+    parts = [dict(source.c), command, compiler_version(command), FLAGS, NATIVE, processor()]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:32]
 
 
@@ -59,7 +61,11 @@ def _built(source: Source, folder: Path, key: str) -> Path:
     try:
         for name, text in source.c.items():
             (work / name).write_text(text, encoding="utf-8")
-        compile_shared(sorted(work.glob("*.c")), library, FLAGS)
+        sources = sorted(work.glob("*.c"))
+        try:
+            compile_shared(sources, library, (*FLAGS, *NATIVE))
+        except ToolError:
+            compile_shared(sources, library, FLAGS)
         return install(folder, key, library)
     except ToolError as error:
         keep = True

@@ -27,10 +27,10 @@ class Refused(Exception):  # noqa: N818 (no error of the user's: something else 
 
 
 def cache_folder() -> Path:
-    """Where compiled factors are kept.
+    r"""Where compiled factors are kept.
 
     ``$LIEGEN_CACHE_DIR``, else ``$XDG_CACHE_HOME/liegen``, else the system's: ``~/.cache/liegen``, on macOS
-    ``~/Library/Caches/liegen``, on Windows ``%LOCALAPPDATA%\\liegen``. Raises Refused without a home.
+    ``~/Library/Caches/liegen``, on Windows ``%LOCALAPPDATA%\liegen``. Raises Refused without a home.
     """
     named = os.environ.get("LIEGEN_CACHE_DIR", "")
     base = os.environ.get("XDG_CACHE_HOME", "")
@@ -71,7 +71,9 @@ def _check_owner(path: Path, status: os.stat_result) -> None:
     if status.st_uid != os.getuid():
         raise Refused(f"{path} belongs to another user (number {status.st_uid})")
     if status.st_mode & 0o077:
-        raise Refused(f"{path} is open to other users (mode {stat.S_IMODE(status.st_mode):o}); chmod 700 {path}")
+        raise Refused(
+            f"{path} is open to other users (mode {stat.S_IMODE(status.st_mode):o}); chmod 700 {path}"
+        )
 
 
 def _check_parent(path: Path, status: os.stat_result) -> None:

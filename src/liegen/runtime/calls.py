@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import namedtuple
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from inspect import Parameter as Place
 from inspect import Signature
-from typing import Any, NoReturn, Protocol
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -16,19 +17,14 @@ from liegen.manifolds import Value
 
 from .source import Parameter, Source
 
-
-class Evaluate(Protocol):
-    """Arrays in the order of the parameters in, an array or a tuple of arrays out, as a gufunc does."""
-
-    def __call__(self, *arrays: Any, out: Any = None) -> Any: ...
+#: Arrays in the order of the parameters in, an array or a tuple of arrays out, and ``out=``: as a gufunc.
+Evaluate = Callable[..., Any]
 
 
 @cache
 def record(name: str, fields: tuple[str, ...]) -> type[tuple[Any, ...]]:
     """A named tuple; its values can be pickled although no module holds the class."""
-    from collections import namedtuple
-
-    base: Any = namedtuple(name, fields)  # noqa: PYI024 (the fields are not known before)
+    base: Any = namedtuple(name, fields)  # pyright: ignore[reportUntypedNamedTuple]
     return type(name, (base,), {"__slots__": (), "__reduce__": _reduced, "__module__": __name__})
 
 
@@ -51,10 +47,12 @@ class Call:
     """
 
     name: str
+    method: str
     parameters: tuple[Parameter, ...]
     evaluate: Evaluate
     make: Any = None  # of the results, the tuple that is returned
     doc: str = ""
+    owner: Any = field(default=None, init=False)  # the compiled factor that this is a method of
     _positional: int = field(init=False)
     _keywords: tuple[str, ...] = field(init=False)
 
@@ -66,7 +64,10 @@ class Call:
         object.__setattr__(self, "__name__", self.name)
         object.__setattr__(self, "__signature__", signature(self.parameters))
 
-    def __call__(self, *arrays: Any, out: Any = None, **given: Any) -> Any:
+    def __reduce__(self) -> tuple[Any, ...]:
+        return getattr, (self.owner, self.method)
+
+    def __call__(self, /, *arrays: Any, out: Any = None, **given: Any) -> Any:
         """Evaluate; the docstring of the instance describes arguments and results."""
         if len(arrays) == self._positional and len(given) == len(self._keywords):
             try:
@@ -82,6 +83,9 @@ class Call:
                 break
         results = self.evaluate(*arrays) if out is None else self.evaluate(*arrays, out=out)
         return results if self.make is None else self.make(results)
+
+    def __repr__(self) -> str:
+        return f"<compiled {self.name}{signature(self.parameters)}>"
 
     def _bound(self, arrays: Sequence[Any], given: Mapping[str, Any]) -> tuple[Any, ...]:
         """The slow way: positional arguments may be named too."""
@@ -131,6 +135,5 @@ def call(source: Source, method: str, evaluate: Evaluate) -> Call:
     described = next(m for m in source.methods if m.name == method)
     fields = tuple(port.name for port in described.outputs)
     made: Any = record(source.records[method], fields) if len(fields) > 1 else None
-    return Call(
-        described.title, source.parameters, evaluate, made and made._make, source.docs[method]
-    )
+    make = partial(tuple.__new__, made) if made else None  # pyright: ignore[reportUnknownMemberType]
+    return Call(described.title, method, source.parameters, evaluate, make, source.docs[method])

@@ -8,8 +8,8 @@ import warnings
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, Literal
+from functools import cached_property, lru_cache
+from typing import Any, Literal, cast
 
 from numpy.typing import ArrayLike
 
@@ -19,7 +19,7 @@ from liegen.errors import CompilerWarning, DefinitionError, ToolError
 from liegen.native import find_compiler
 
 from .build import load
-from .calls import Call, Evaluate, call
+from .calls import Call, Evaluate, call, signature
 from .indexed import Indices, batch_evaluator, checked_indices, gathering
 from .numpy_code import numpy_evaluators
 from .source import PACKAGE, Source, emitted
@@ -34,12 +34,17 @@ class Methods(Call):
 
     calls: Mapping[str, Call]
 
-    @property
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for method in self.calls.values():
+            object.__setattr__(method, "owner", self)
+
+    @cached_property
     def jacobians(self) -> Call:
         """The value and all Jacobians, as a named tuple. AttributeError for a factor without variables."""
         return self._method("jacobians")
 
-    @property
+    @cached_property
     def status(self) -> Call:
         """The bits of the requirements that do not hold, 0 inside of the domain: integers (...)."""
         return self._method("status")
@@ -53,9 +58,13 @@ class Methods(Call):
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Indexed(Methods):
-    """A compiled factor with index arrays: their arguments are arrays (N, ...) that all factors gather from."""
+    """A compiled factor with index arrays: their arguments are arrays (N, ...) to gather from."""
 
+    compiled: Compiled
     indices: Indices
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return reindexed, (self.compiled, dict(self.indices.arrays))
 
     def __repr__(self) -> str:
         names = ", ".join(self.indices.arrays)
@@ -80,28 +89,27 @@ class Compiled(Methods):
         """What must hold inside of the domain, in the order of the bits of the status."""
         return self.source.requirements
 
-    def indexed(self, **index: ArrayLike) -> Indexed:
+    def indexed(self, /, **index: ArrayLike) -> Indexed:
         """The factor of each number in index arrays (n,), one for each argument that is gathered.
 
-        ``k.indexed(x=i, y=j).jacobians(poses, poses, z=z)`` computes factor k from poses[i[k]], poses[j[k]] and
-        z[k]. The arrays are copied and checked here, once; a call then compares only the largest number with the
-        length. Raises IndexError for negative numbers, and on a call for one that is too large.
+        ``k.indexed(x=i, y=j).jacobians(poses, poses, z=z)`` computes factor n from poses[i[n]], poses[j[n]]
+        and z[n]. The arrays are copied and checked here, once; a call then compares only the largest number
+        with the length. Raises IndexError for negative numbers, and on a call for one that is too large.
         """
         indices = checked_indices(self.source, index)
         calls: dict[str, Call] = {}
         for method in self.source.methods:
-            evaluate = gathering(self.source, method, self.calls[method.name].evaluate, indices)
+            evaluate = gathering(method, self.calls[method.name].evaluate, indices)
             if self.library is not None and method.name != "status":
-                evaluate = batch_evaluator(self.source, self.library, method, indices)
+                evaluate = batch_evaluator(self.library, method, indices)
             calls[method.name] = call(self.source, method.name, evaluate)
-        value = calls["value"]
-        return Indexed(
-            value.name, value.parameters, value.evaluate, value.make, value.doc, calls=calls, indices=indices
-        )
+        return Indexed(*_first(calls), calls=calls, compiled=self, indices=indices)
 
     def __repr__(self) -> str:
         shown = {"c": "C", "numpy": "NumPy code"}[self.backend]
-        return f"<compiled {self.name}{self.__signature__} {self.source.methods[0].signature}, {shown}>"
+        return (
+            f"<compiled {self.name}{signature(self.parameters)} {self.source.methods[0].signature}, {shown}>"
+        )
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Compiled) and (self.source, self.backend) == (other.source, other.backend)
@@ -131,17 +139,22 @@ def restored(name: str, digest: str, packed: bytes, asked: Backend | None) -> Co
     return assembled(source, asked)
 
 
+def reindexed(compiled: Compiled, index: Mapping[str, ArrayLike]) -> Indexed:
+    """A pickled factor with index arrays."""
+    return compiled.indexed(**index)
+
+
 def compile(function: Function[..., Any], *, backend: Backend | None = None) -> Compiled:
     """Compile a ``@factor`` or ``@function`` for this machine's processor.
 
-    ``backend`` "c" insists on a C compiler, "numpy" does without; by default it is C where there is a compiler,
-    else NumPy code with a warning (CompilerWarning). The machine code is kept in the user's cache folder.
+    ``backend`` "c" insists on a C compiler, "numpy" does without; by default it is C where there is a
+    compiler, else NumPy code with a warning (CompilerWarning). The machine code is kept in the user's cache
+    folder.
     Raises DefinitionError for what is no factor, ToolError for a compiler that fails.
     """
-    if not isinstance(function, Function):
-        raise DefinitionError(
-            f"liegen.compile needs a @factor or @function, got {type(function).__name__} {function!r:.60}"
-        )
+    given = cast(object, function)
+    if not isinstance(given, Function):
+        raise DefinitionError(f"liegen.compile needs a @factor or @function, got {type(given).__name__}")
     if backend not in (None, "c", "numpy"):
         raise DefinitionError(f"liegen.compile: backend is 'c' or 'numpy', got {backend!r}")
     return assembled(emitted(function.kernel), backend)
@@ -151,11 +164,16 @@ def assembled(source: Source, asked: Backend | None) -> Compiled:
     """The methods of a factor on a backend."""
     library = load(source) if asked == "c" or (asked is None and _has_compiler()) else None
     calls = {name: call(source, name, evaluate) for name, evaluate in _evaluators(source, library).items()}
-    value = calls["value"]
     return Compiled(
-        value.name, value.parameters, value.evaluate, value.make, value.doc,
+        *_first(calls),
         calls=calls, source=source, backend="numpy" if library is None else "c", asked=asked, library=library,
     )  # fmt: skip
+
+
+def _first(calls: Mapping[str, Call]) -> tuple[Any, ...]:
+    """What calling the factor itself does."""
+    value = calls["value"]
+    return value.name, value.method, value.parameters, value.evaluate, value.make, value.doc
 
 
 def _evaluators(source: Source, library: ctypes.CDLL | None) -> Mapping[str, Evaluate]:
@@ -168,8 +186,8 @@ def _has_compiler() -> bool:
     if find_compiler():
         return True
     warnings.warn(
-        "no C compiler was found: compiled factors run as NumPy code; install one, name it in the environment "
-        "variable CC, or pip install liegen[compile]",
+        "no C compiler was found: compiled factors run as NumPy code; install one, name it in the "
+        "environment variable CC, or pip install liegen[compile]",
         CompilerWarning,
         stacklevel=4,
     )

@@ -14,7 +14,7 @@ from liegen.emit.loops import NUMBERS, Method, Number
 from liegen.program import Port
 
 from .calls import Evaluate
-from .numpy_code import handed, number
+from .numpy_code import handed, number, targets
 from .source import PACKAGE, Source
 
 Array = NDArray[Any]
@@ -95,7 +95,7 @@ def _checked(what: str, array: Array) -> NDArray[np.int32]:
     return made
 
 
-def gathering(source: Source, method: Method, evaluate: Evaluate, indices: Indices) -> Evaluate:
+def gathering(method: Method, evaluate: Evaluate, indices: Indices) -> Evaluate:
     """The same without C: the elements are copied together first."""
 
     def gathered(*arrays: Any, out: Any = None) -> Any:
@@ -121,44 +121,41 @@ def _leading(method: Method, port: Port, array: Array, length: int) -> bool:
         return True
     core = ", ".join(map(str, port.shape))
     raise ValueError(
-        f"{method.title}: argument {port.name}: expected shape ({length}, {core}) or ({core}), got {array.shape}"
+        f"{method.title}: argument {port.name}: expected shape ({length}, {core}) or ({core}), "
+        f"got {array.shape}"
     )
 
 
-def batch_evaluator(source: Source, library: ctypes.CDLL, method: Method, indices: Indices) -> Evaluate:
+def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> Evaluate:
     """A method through the C function of batches; the interpreter's lock is released while it runs."""
-    functions = {np.dtype(n.dtype): _function(source, library, n, len(method.inputs)) for n in NUMBERS}
+    functions = {np.dtype(n.dtype): _function(library, method, n) for n in NUMBERS}
     n = indices.length
     order = [port.name for port in (*method.inputs, *method.outputs)]
-    places = [order.index(name) if name in order else None for name in source.taken]
+    places = [order.index(name) if name in order else None for name in method.taken]
 
     def evaluate(*arrays: Any, out: Any = None) -> Any:
         values = [np.asarray(array) for array in arrays]
         dtype = number(values)
-        targets = out if isinstance(out, tuple) else (out,) * len(method.outputs) if out is None else (out,)
         inputs = [_cast(method, port, v, dtype) for port, v in zip(method.inputs, values, strict=True)]
-        passed: list[Any] = []
-        for port, value in zip(method.inputs, inputs, strict=True):
-            passed.append(_input(method, port, value, indices))
+        passed: list[Any] = [
+            _input(method, port, v, indices) for port, v in zip(method.inputs, inputs, strict=True)
+        ]
         results: list[Array] = []
-        for k, port in enumerate(method.outputs):
-            target = targets[k] if k < len(targets) else None
-            direct = _direct(target, (n, *port.shape), dtype, inputs)
-            made: Array = direct if direct is not None else np.empty((n, *port.shape), dtype)
-            stride, comp = steps(made, port.shape)
-            passed.append(_Out(made.ctypes.data, stride, comp))
+        for port, target in zip(method.outputs, targets(out, len(method.outputs)), strict=True):
+            shape = (n, *port.shape)
+            made = target if _direct(target, shape, dtype, inputs) else np.empty(shape, dtype)
+            passed.append(_Out(made.ctypes.data, *steps(made, port.shape)))
             results.append(made)
-        nothing = _Out(None, 0, 0)
-        functions[dtype](n, *(nothing if p is None else passed[p] for p in places), None)
+        functions[dtype](n, *(_Out(None, 0, 0) if p is None else passed[p] for p in places), None)
         return handed(results, dtype, out)
 
     return evaluate
 
 
-def _function(source: Source, library: ctypes.CDLL, kind: Number, inputs: int) -> Callable[..., int]:
-    function = library[f"{PACKAGE}_{source.name}_batch{kind.suffix}"]
-    outputs = len(source.taken) - inputs
-    function.argtypes = [ctypes.c_ssize_t, *[_In] * inputs, *[_Out] * outputs, ctypes.c_void_p]
+def _function(library: ctypes.CDLL, method: Method, kind: Number) -> Callable[..., int]:
+    function = library[f"{PACKAGE}_{method.function}{kind.suffix}"]
+    inputs, total = len(method.inputs), len(method.taken)
+    function.argtypes = [ctypes.c_ssize_t, *[_In] * inputs, *[_Out] * (total - inputs), ctypes.c_void_p]
     function.restype = ctypes.c_int
     return function
 
@@ -190,21 +187,22 @@ def steps(array: Array, core: tuple[int, ...]) -> tuple[int, int]:
 
 
 def _input(method: Method, port: Port, array: Array, indices: Indices) -> _In:
-    stride, comp = steps(array, port.shape)
     index = indices.arrays.get(port.name)
     if index is None:
         each = _leading(method, port, array, indices.length)
+        stride, comp = steps(array, port.shape)
         return _In(array.ctypes.data, stride if each else 0, comp, None)
     indices.check(method.title, port.name, array, port.shape)
+    stride, comp = steps(array, port.shape)
     return _In(array.ctypes.data, stride, comp, index.ctypes.data)
 
 
-def _direct(target: Any, shape: tuple[int, ...], dtype: np.dtype[Any], inputs: Sequence[Array]) -> Array | None:
-    """The caller's array where C can write to it."""
+def _direct(target: Any, shape: tuple[int, ...], dtype: np.dtype[Any], inputs: Sequence[Array]) -> bool:
+    """Whether C can write to the caller's array."""
     if not isinstance(target, np.ndarray):
-        return None
-    array: Array = target
-    fits = array.shape == shape and array.dtype == dtype and array.flags.writeable and array.flags.aligned
-    if not fits or not _regular(array, shape[1:]) or any(np.may_share_memory(array, x) for x in inputs):
-        return None
-    return array
+        return False
+    array: Array = np.asarray(target)  # pyright: ignore[reportUnknownArgumentType]
+    if array.shape != shape or array.dtype != dtype:
+        return False
+    plain = array.flags.writeable and array.flags.aligned and _regular(array, shape[1:])
+    return plain and not any(np.may_share_memory(array, x) for x in inputs)

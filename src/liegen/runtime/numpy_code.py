@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,13 +71,13 @@ def _evaluator(
 
 def _status(source: Source, value: Evaluate, conditions: Callable[..., Any]) -> Evaluate:
     described = next(m for m in source.methods if m.name == "value")
-    first = len(described.outputs[0].shape)
+    first, single = len(described.outputs[0].shape), len(described.outputs) == 1
 
     def evaluate(*arrays: Any, out: Any = None) -> Any:
         values = [np.asarray(array) for array in arrays]
         results = value(*values)  # refuses what it refuses
-        shape = np.shape(results[0] if isinstance(results, tuple) else results)
-        batch = shape[: len(shape) - first]
+        value_shape: tuple[int, ...] = np.shape(results if single else results[0])
+        batch = value_shape[: len(value_shape) - first]
         parts = [_components(v, port) for v, port in zip(values, described.inputs, strict=True)]
         with np.errstate(all="ignore"):
             held = conditions(parts)
@@ -99,14 +99,22 @@ def number(values: Sequence[Array]) -> np.dtype[Any]:
     return next(fits, types[-1])
 
 
+def targets(out: Any, count: int) -> tuple[Any, ...]:
+    """An array, or None for a new one, for each result. Raises ValueError for another number of them."""
+    given: tuple[Any, ...] = (
+        cast(Any, out) if isinstance(out, tuple) else (out,) * (count if out is None else 1)
+    )
+    if len(given) != count:
+        raise ValueError(f"out must hold {count} arrays, one for each result, got {len(given)}")
+    return given
+
+
 def handed(results: Sequence[Array], dtype: np.dtype[Any], out: Any) -> Any:
     """Results in their type, or written to ``out``; a single one is not a tuple."""
-    targets = out if isinstance(out, tuple) else (out,) * len(results) if out is None else (out,)
-    if len(targets) != len(results):
-        raise ValueError(f"out must hold {len(results)} arrays, got {len(targets)}")
     made = [r if r.dtype == dtype else r.astype(dtype) for r in results]
-    for k, target in enumerate(targets):
+    for k, target in enumerate(targets(out, len(results))):
         if target is not None:
-            np.copyto(target, made[k], casting="same_kind")
+            if target is not made[k]:
+                np.copyto(target, made[k], casting="same_kind")
             made[k] = target
     return made[0] if len(made) == 1 else tuple(made)

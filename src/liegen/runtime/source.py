@@ -34,14 +34,12 @@ class Parameter:
 class Source:
     """A factor as text: C with the loops that NumPy calls, NumPy code, statements on floats.
 
-    ``taken`` are the names of the batch function's arguments and outputs, in its order. ``docs`` and
-    ``records`` are the docstring of each method and the name of the tuple that it returns, if it does.
+    ``docs`` and ``records`` are the docstring of each method and the name of the tuple that it returns, if it
+    does.
     """
 
     name: str
-    formula: tuple[str, ...]
     parameters: tuple[Parameter, ...]
-    taken: tuple[str, ...]
     methods: tuple[Method, ...]
     docs: Mapping[str, str]
     records: Mapping[str, str]
@@ -62,10 +60,6 @@ class Source:
     def __hash__(self) -> int:
         return hash(self.digest)
 
-    def method(self, name: str) -> Method | None:
-        """The method of a name; None where the factor has none."""
-        return next((m for m in self.methods if m.name == name), None)
-
 
 def emitted(kernel: Kernel) -> Source:
     """Everything that is emitted for a factor. Raises DefinitionError for names that a language refuses."""
@@ -75,12 +69,10 @@ def emitted(kernel: Kernel) -> Source:
     several = len(kernel.outputs) > 1
     return Source(
         name=kernel.name,
-        formula=kernel.formula,
         parameters=tuple(
             Parameter(a.name, a.manifold, a.shape, a in kernel.keywords)
             for a in (*kernel.positional, *kernel.keywords)
         ),
-        taken=(*(a.name for a in kernel.arguments), *(port.name for port in kernel.jacobians.outputs)),
         methods=methods(kernel),
         docs={
             "value": "\n".join(interface_doc(kernel, kernel.value)),

@@ -1,4 +1,4 @@
-"""gufuncs from a plain shared object: NumPy's own C function, found in its table and called through ctypes."""
+"""gufuncs from a plain shared object: NumPy's own C function, found in its table, called through ctypes."""
 
 from __future__ import annotations
 
