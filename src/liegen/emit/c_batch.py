@@ -54,19 +54,15 @@ class Block:
 
 @dataclass(frozen=True)
 class Batch:
-    """The function of a batch: names of its own variables, statements of its loop."""
+    """The function of a batch: its variables, the head of its loop over blocks, what is done with a block."""
 
     name: str
     parameters: tuple[str, ...]
-    n: str
-    k: str
     locals: tuple[str, ...]
-    prepare: tuple[str, ...]
-    jacobians: str
-    calls: tuple[str, ...]
-    jacobian_stores: tuple[str, ...]
-    stores: tuple[str, ...]
-    result: str
+    loop: str
+    body: tuple[str, ...]
+    stream: str
+    violated: str
 
 
 def batch_name(kernel: Kernel) -> str:
@@ -122,10 +118,6 @@ def _block(kernel: Kernel, program: Program, name: str, held: str) -> Block:
     )
 
 
-def _call(block: Block, arguments: Sequence[str]) -> str:
-    return f"{block.name}({', '.join(arguments)});"
-
-
 def batch_parameters(kernel: Kernel, options: Options, n: str) -> tuple[str, ...]:
     """The parameters of the batch function."""
     return (
@@ -136,76 +128,98 @@ def batch_parameters(kernel: Kernel, options: Options, n: str) -> tuple[str, ...
     )
 
 
-def names_of_its_own(kernel: Kernel) -> dict[str, str]:
-    """A name for each variable of the batch function that no argument or output has."""
-    used = {
-        *(a.name for a in kernel.arguments),
-        *(p.name for p in kernel.jacobians.outputs),
-        *scalar_names(kernel),
-    }
-    return {name: _fresh(name, used) for name in ("n", "k", "count", "held", "violated", "jacobians")}
+@dataclass(frozen=True)
+class _Names:
+    """The variables of a batch function, named as nothing of the kernel is."""
+
+    n: str
+    k: str
+    count: str
+    held: str
+    broken: str
+    violated: str
+    jacobians: str
+    stream: str
+    room: str
+    arrays: Mapping[str, str]
+
+
+def _names(kernel: Kernel) -> _Names:
+    ports = [*(a.name for a in kernel.arguments), *(p.name for p in kernel.jacobians.outputs)]
+    used = {*ports, *scalar_names(kernel)}
+    own = ("n", "k", "count", "held", "broken", "violated", "jacobians", "stream", "room")
+    arrays = {name: _fresh(f"{name}_lanes", used) for name in ports}
+    return _Names(*(_fresh(name, used) for name in own), arrays)
+
+
+def _indented(condition: str, lines: Sequence[str]) -> list[str]:
+    return [f"if ({condition}) {{", *(f"    {line}" for line in lines), "}"] if lines else []
+
+
+def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) -> list[str]:
+    """What is done with a block: load, compute, blank what is outside of the domain, store."""
+    values = [o.name for o in kernel.outputs]
+    sizes = {p.name: p.size for p in kernel.jacobians.outputs}
+    added = [name for name in sizes if name not in values]
+    bits, place = len(kernel.value.requirements), f"{names.k}, {names.count}"
+    extra = [names.held] if bits else []
+
+    def call(block: Block, outputs: Sequence[str]) -> str:
+        arguments = [names.arrays[name] for name in (*(a.name for a in kernel.arguments), *outputs)]
+        return f"{block.name}({', '.join([*arguments, *extra])});"
+
+    def blank(name: str) -> str:
+        return f"lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
+
+    def store(name: str) -> str:
+        passed = f"{names.arrays[name]}, {names.room}, {names.stream}"
+        return f"{package}_store({name}, {sizes[name]}, {place}, {passed});"
+
+    lines = [f"const int {names.count} = {names.n} - {names.k} < LANES ? (int)({names.n} - {names.k}) : LANES;"]
+    lines += [f"lanes {names.arrays[a.name]}[{a.size}];" for a in kernel.arguments]
+    lines += [f"lanes {names.arrays[name]}[{size}];" for name, size in sizes.items()]
+    lines += [f"lanes {names.room}[{max(sizes.values())}];"]
+    lines += [f"lanes_mask {names.held}[{bits}];"] if bits else []
+    lines += [
+        f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments
+    ]
+    if added:
+        lines += [f"if ({names.jacobians})", f"    {call(blocks[1], [*sizes])}", "else"]
+        lines += [f"    {call(blocks[0], values)}"]
+    else:
+        lines += [call(blocks[0], values)]
+    if bits:
+        lines += [f"const int {names.broken} = lanes_status({names.held}, {bits}, {place}, status);"]
+        lines += [f"{names.violated} |= {names.broken};"]
+        lines += _indented(names.broken, [blank(name) for name in values])
+        lines += _indented(f"{names.broken} && {names.jacobians}", [blank(name) for name in added])
+    else:
+        lines += [f"lanes_status(NULL, 0, {place}, status);"]
+    lines += [store(name) for name in values]
+    return [*lines, *_indented(names.jacobians, [store(name) for name in added])]
 
 
 def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
     """The names that the batch's template lays out."""
-    own = names_of_its_own(kernel)
-    n, k, count, held = own["n"], own["k"], own["count"], own["held"]
-    package, outputs = options.package, kernel.jacobians.outputs
-    values = {o.name for o in kernel.outputs}
+    names = _names(kernel)
     programs = [(kernel.value, "block_value"), (kernel.jacobians, "block_jacobians")]
-    blocks = [_block(kernel, p, name, held) for p, name in programs[: 2 if kernel.variables else 1]]
-    ports = [*(Port(a.name, a.shape) for a in kernel.arguments), *outputs]
-    used = {p.name for p in ports} | set(own.values())
-    array = {p.name: _fresh(f"{p.name}_lanes", used) for p in ports}
-    requirements = len(kernel.value.requirements)
-    arguments = [array[a.name] for a in kernel.arguments]
-    extra = [held] if requirements else []
-
-    def store(port: Port) -> list[str]:
-        target = array[port.name]
-        lines = [f"lanes_blank({target}, {port.size}, {held}, {requirements});"] if requirements else []
-        return [*lines, f"{package}_store({port.name}, {port.size}, {k}, {count}, {target});"]
-
-    jacobian_ports = [p for p in outputs if p.name not in values]
+    blocks = [_block(kernel, p, name, names.held) for p, name in programs[: 2 if kernel.variables else 1]]
+    size = {name: sum(p.size for p in program.outputs) for program, name in programs}
+    values = {o.name for o in kernel.outputs}
+    wanted = " || ".join(f"{p.name}.data != NULL" for p in kernel.jacobians.outputs if p.name not in values)
+    total = f"{names.jacobians} ? {size['block_jacobians']} : {size['block_value']}" if wanted else str(size["block_value"])
     batch = Batch(
-        name=f"{package}_{batch_name(kernel)}",
-        parameters=batch_parameters(kernel, options, n),
-        n=n,
-        k=k,
+        name=f"{options.package}_{batch_name(kernel)}",
+        parameters=batch_parameters(kernel, options, names.n),
         locals=(
-            *(
-                [
-                    f"const int {own['jacobians']} = {' || '.join(f'{p.name}.data != NULL' for p in jacobian_ports)};"
-                ]
-                if jacobian_ports
-                else []
-            ),
-            f"int {own['violated']} = 0;",
+            *([f"const int {names.jacobians} = {wanted};"] if wanted else []),
+            f"const int {names.stream} = lanes_streams({names.n}, {total});",
+            f"int {names.violated} = 0;",
         ),
-        prepare=(
-            f"const int {count} = {n} - {k} < LANES ? (int)({n} - {k}) : LANES;",
-            *(f"lanes {array[p.name]}[{p.size}];" for p in ports),
-            *([f"lanes_mask {held}[{requirements}];"] if requirements else []),
-            *(
-                f"{package}_load({a.name}, {a.size}, {k}, {count}, {array[a.name]});"
-                for a in kernel.arguments
-            ),
-        ),
-        jacobians=own["jacobians"],
-        calls=tuple(
-            _call(b, [*arguments, *(array[p.name] for p in program.outputs), *extra])
-            for b, (program, _) in zip(blocks, programs, strict=False)
-        ),
-        jacobian_stores=tuple(line for p in jacobian_ports for line in store(p)),
-        stores=(
-            *(line for p in outputs if p.name in values for line in store(p)),
-            (
-                f"{own['violated']} |= lanes_status({held}, {requirements}, {k}, {count}, status);"
-                if requirements
-                else f"lanes_fine({k}, {count}, status);"
-            ),
-        ),
-        result=own["violated"],
+        loop=f"ptrdiff_t {names.k} = 0; {names.k} < {names.n}; {names.k} += LANES",
+        body=tuple(_body(kernel, options.package, names, blocks)),
+        stream=names.stream,
+        violated=names.violated,
     )
     return {
         "blocks": tuple(blocks),
