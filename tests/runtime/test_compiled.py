@@ -155,7 +155,7 @@ def test_any_layout_of_inputs(compiled, layout):
 
 def test_inputs_whose_numbers_are_one_number(compiled):
     k = compiled(between)
-    (x, y), given = arguments(between, (5,))
+    (x, _), given = arguments(between, (5,))
     same = np.broadcast_to(0.5, (5, 7))
     close(k.jacobians(x, same, z=given["z"]), k.jacobians(x, same.copy(), z=given["z"]))
 
@@ -226,9 +226,7 @@ def test_single_precision(compiled):
 def test_wrong_shapes_name_function_and_argument(compiled):
     k = compiled(between)
     good = np.zeros((4, 7))
-    with pytest.raises(
-        ValueError, match=r"between_se3_jacobians: .*(operand 1 .*\(7\),\(7\),\(7\)->|argument y)"
-    ):
+    with pytest.raises(ValueError, match=r"between_se3_jacobians: .*(operand 1 .*\(7\),\(7\)->|argument y)"):
         k.jacobians(good, np.zeros((4, 6)), z=good)
     with pytest.raises(ValueError, match=r"\(4,|\(4\)|broadcast"):
         k(good, np.zeros((3, 7)), z=good)

@@ -124,9 +124,7 @@ def test_a_wrong_index_is_an_error(compiled):
         k.indexed(x=[0, 2**32])
     e = k.indexed(x=[0, 1], y=[0, N])
     for call in (e, e.jacobians):
-        with pytest.raises(
-            IndexError, match=f"between_se3.*: the index of y holds {N}, but y has {N} elements"
-        ):
+        with pytest.raises(IndexError, match=f"between_se3.*: the index of y holds {N}, but y has {N} el"):
             call(x, x, z=z)
     with pytest.raises(TypeError, match="index of x must hold integers, got float64"):
         k.indexed(x=[0.5, 1])
