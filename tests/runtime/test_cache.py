@@ -27,6 +27,11 @@ R, p = arguments(rotated, (4,))[0]
 SOURCES = Path(liegen.__file__).parents[1]
 
 
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch):
+    monkeypatch.setattr(build, "FLAGS", ("-std=c99", "-O0"))
+
+
 def works(k):
     quaternion, point = R[0], p[0]
     u, w = quaternion[:3], quaternion[3]
