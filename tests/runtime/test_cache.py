@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import os
 import pickle
@@ -168,6 +169,18 @@ def test_a_full_or_read_only_disk(folder, monkeypatch, code):
     assert entries(folder) == []
 
 
+def test_a_disk_without_execution(folder, monkeypatch):
+    load = ctypes.CDLL
+
+    def fail(path):
+        if folder in Path(path).parents:
+            raise OSError("failed to map segment from shared object")
+        return load(path)
+
+    monkeypatch.setattr(build.ctypes, "CDLL", fail)
+    refused("cannot load from it: failed to map segment")
+
+
 def test_no_home(monkeypatch, folder):
     monkeypatch.delenv("LIEGEN_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", "relative/paths/do/not/count")
@@ -245,6 +258,13 @@ def test_a_compiler_that_does_not_know_the_processor(folder, tmp_path, monkeypat
     refuses = f'case "$*" in *march=native*) echo unknown >&2; exit 1;; esac; exec {real} "$@"'
     monkeypatch.setenv("CC", script(tmp_path / "oldcc", refuses))
     works(liegen.compile(rotated))
+
+
+@pytest.mark.slow
+def test_the_compiler_of_the_package_ziglang(folder, monkeypatch):
+    pytest.importorskip("ziglang")
+    monkeypatch.setenv("CC", f"{sys.executable} -m ziglang cc")
+    assert works(liegen.compile(rotated)).backend == "c"
 
 
 @pytest.fixture
