@@ -31,8 +31,8 @@ class Target:
 
     ``public`` lists what the code of a kernel defines for its users, without a prefix that all share.
     ``keywords`` maps a language to its keywords; ``reserved`` are names that the templates use, ``files``
-    names whose file would hide another one. No name of a factor may be one of them. ``package_names`` are what
-    the package's templates lay out beside the factors.
+    names whose file would hide another one. No name of a factor may be one of them. ``package_names``
+    are what the package's templates lay out beside the factors.
     """
 
     name: str
