@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 import warnings
+import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -342,7 +344,11 @@ def test_pickles_in_another_process(kept, tmp_path, place):
 
 
 def test_a_pickle_of_another_version():
-    function, (name, digest, packed, asked) = liegen.compile(pixel).__reduce__()
+    k = liegen.compile(pixel)
+    function, (name, digest, packed, asked) = k.__reduce__()
+    other = replace(k.source, floats=f"{k.source.floats}\n")
+    with pytest.raises(ToolError, match="pixel was pickled by another version"):
+        function(name, digest, zlib.compress(pickle.dumps(other)), asked)
     with pytest.raises(ToolError, match=r"pixel was pickled by another version of liegen; call liegen\.comp"):
         function(name, digest[::-1], packed, asked)
     with pytest.raises(ToolError, match="pixel was pickled by another version"):
