@@ -1,4 +1,4 @@
-"""Batches of library and groups: the same bits on every width, and those of one factor unless libm is in it."""
+"""Batches of library and groups: the same bits on every width, and those of one factor without libm in it."""
 
 from __future__ import annotations
 

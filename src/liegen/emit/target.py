@@ -10,11 +10,12 @@ from liegen.kernel import Kernel
 
 @dataclass(frozen=True)
 class Options:
-    """What the caller chose: the package's name, the command that regenerates it, the Jacobians' layout."""
+    """What the caller chose: package, the command that regenerates it, the Jacobians' layout, the scalars."""
 
     package: str
     regenerate: str
     layout: str = "row"
+    scalar: str = "double"
 
 
 @dataclass(frozen=True)
