@@ -1,0 +1,160 @@
+"""One function, all variants: generate, compile, check that they agree, time them in turn."""
+
+from __future__ import annotations
+
+import statistics
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import draws
+from .agreement import Errors, errors
+from .build import Array, Loaded, load
+from .timing import in_turn
+from .variant import FLAGS, Absent, Maker, Missing, Task, Variant
+
+#: Variants whose results differ more from the reference, relative to max(1, largest entry), are not timed.
+AGREEMENT = 1e-9
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How long and on what: distinct inputs in a round, rounds, the inputs' seed, flags, reference samples."""
+
+    calls: int = 10_000
+    rounds: int = 100
+    seed: int = 0
+    flags: tuple[str, ...] = tuple(FLAGS)
+    references: int = 6
+    workers: int = 2
+
+
+@dataclass(frozen=True)
+class Time:
+    """Nanoseconds a call on one set of inputs.
+
+    ``ratio`` is the median over the rounds of this variant's time by that of the first in the same round.
+    """
+
+    minimum_ns: float
+    median_ns: float
+    ratio: float
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A variant with certain flags: its times and errors by set of inputs; no times where it is wrong."""
+
+    variant: Variant
+    flags: str
+    times: Mapping[str, Time]
+    errors: Mapping[str, float]
+
+    @property
+    def agrees(self) -> bool:
+        """Whether it was timed."""
+        return bool(self.times)
+
+    @property
+    def operations(self) -> int | None:
+        """All of them, calls included."""
+        kinds = self.variant.operations
+        return None if kinds is None else sum(kinds.values())
+
+
+@dataclass(frozen=True)
+class Result:
+    """The entries of a function, the first of them the base of the ratios, and the peers that are missing."""
+
+    function: str
+    entries: tuple[Entry, ...]
+    missing: tuple[Missing, ...]
+
+    @property
+    def best(self) -> tuple[Entry, ...]:
+        """Every variant once, with the flags that make it fastest on random inputs; wrong ones too."""
+        found: dict[str, Entry] = {}
+        for entry in self.entries:
+            known = found.get(entry.variant.label)
+            if known is None or _median(entry) < _median(known):
+                found[entry.variant.label] = entry
+        return tuple(found.values())
+
+
+def _median(entry: Entry) -> float:
+    return entry.times[draws.RANDOM].median_ns if entry.agrees else float("inf")
+
+
+def race(task: Task, makers: Mapping[str, Maker], plan: Plan) -> Result:
+    """Time every variant of a task with all flags; the first maker's first variant is the base.
+
+    A peer that is not installed, or whose code does not compile, is missing from the table, with the reason.
+    """
+    made, missing = generated(task, makers)
+    drawn = {kind: draws.samples(task.function, kind, plan.calls, plan.seed) for kind in draws.SETS}
+    inputs = {kind: draws.rows(samples) for kind, samples in drawn.items()}
+    references = {kind: Errors.of(task, samples[: plan.references]) for kind, samples in drawn.items()}
+    with tempfile.TemporaryDirectory() as folder:
+        loaded, refused = _loaded(task, made, plan, Path(folder))
+        found = [{kind: errors(one, references[kind]) for kind in draws.SETS} for _, one in loaded]
+        sound = [k for k, error in enumerate(found) if error[draws.RANDOM] <= AGREEMENT]
+        times = {kind: _times([loaded[k][1] for k in sound], inputs[kind], plan) for kind in draws.SETS}
+    entries = tuple(
+        Entry(
+            one.variant,
+            flags,
+            {kind: times[kind][sound.index(k)] for kind in draws.SETS} if k in sound else {},
+            found[k],
+        )
+        for k, (flags, one) in enumerate(loaded)
+    )
+    return Result(task.name, entries, (*missing, *refused))
+
+
+def generated(task: Task, makers: Mapping[str, Maker]) -> tuple[list[Variant], list[Missing]]:
+    """The variants of all peers that are there."""
+    made: list[Variant] = []
+    missing: list[Missing] = []
+    for peer, maker in makers.items():
+        try:
+            variants = maker(task)
+        except Absent as reason:
+            missing.append(Missing(peer, str(reason)))
+        else:
+            made += variants
+            if not variants:
+                missing.append(Missing(peer, "has no formula of this function"))
+    return made, missing
+
+
+def _loaded(
+    task: Task, made: Sequence[Variant], plan: Plan, folder: Path
+) -> tuple[list[tuple[str, Loaded]], list[Missing]]:
+    wanted = [(flags, variant) for variant in made for flags in plan.flags]
+
+    def attempt(job: tuple[int, tuple[str, Variant]]) -> Loaded | Missing:
+        number, (flags, variant) = job
+        try:
+            return load(task, variant, FLAGS[flags], folder / str(number))
+        except Absent as reason:
+            return Missing(variant.label, str(reason))
+
+    with ThreadPoolExecutor(plan.workers) as pool:
+        done = list(pool.map(attempt, enumerate(wanted)))
+    loaded = [(flags, one) for (flags, _), one in zip(wanted, done, strict=True) if isinstance(one, Loaded)]
+    refused = {one.peer: one for one in done if isinstance(one, Missing)}
+    return loaded, list(refused.values())
+
+
+def _times(loaded: Sequence[Loaded], inputs: Array, plan: Plan) -> list[Time]:
+    buffers = [np.zeros(sum(port.size for port in one.task.outputs)) for one in loaded]
+    runs: list[Callable[[], None]] = [one.run(inputs, b) for one, b in zip(loaded, buffers, strict=True)]
+    measured = in_turn(runs, len(inputs), plan.rounds)
+    return [
+        Time(min(ns), statistics.median(ns), statistics.median(a / b for a, b in zip(ns, measured[0], strict=True)))
+        for ns in measured
+    ]
