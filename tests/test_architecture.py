@@ -12,7 +12,7 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
-    "noise", "program", "kernel", "derive", "define", "decorate", "samples", "library", "modules", "sources",
+    "noise", "program", "kernel", "choice", "derive", "define", "decorate", "samples", "library", "modules", "sources",
     "emit",
     "native", "verify", "foreign", "bench", "explain", "cli",
 )  # fmt: skip

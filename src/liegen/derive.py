@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -11,7 +11,8 @@ import numpy as np
 from liegen.algebra.linear import Matrix
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import GTSAM, form_chart
-from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
+from liegen.choice import ranked
+from liegen.differentiate import STRATEGIES, Expressions, expressions, fused, linearised
 from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
 from liegen.manifolds import Manifold, ManifoldForm, MatrixValue, Vector
@@ -21,21 +22,23 @@ from liegen.program.lower import lower
 from liegen.program.passes import optimise
 from liegen.trace import Graph, formula, jacobian_formulas
 
+#: Orders whose counts are that close to the best one's are carried out.
+CLOSE = 1.01
+
 
 def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool = False) -> Kernel:
     """Differentiate, whiten and weigh where ``weighting`` says so, lower and optimise.
 
-    Every strategy of elimination is tried; the program with the fewest operations after all passes is kept,
-    the first among equals. ``in_place`` as in :class:`Kernel`.
+    The orders of elimination are ranked by counting; of the best ones, with and without fused operations,
+    the program with the fewest operations after all passes is kept, the first among equals. ``in_place`` as
+    in :class:`Kernel`.
     """
     values = expressions(graph)
-    value, _ = optimise(lowered(graph, values, {}, weighting))
-    candidates = [
-        (name, *optimise(lowered(graph, values, jacobians(graph, values, strategy), weighting)))
-        for name, strategy in STRATEGIES.items()
-    ]
-    name, best, rows = min(candidates, key=lambda c: c[1].operations)
-    first = f"lower, {name} order" if any(p.variable for p in graph.parameters) else "lower"
+    value, rows = optimise(lowered(graph, values, {}, weighting))
+    name, best = "", value
+    if any(p.variable for p in graph.parameters):
+        name, best, rows = min(_candidates(graph, values, weighting), key=lambda c: c[1].operations)
+    first = f"lower, {name} order" if name else "lower"
     passes = (PassCount(first, rows[0][1]), *(PassCount(*row) for row in rows[1:]))
     shown = unwhitened(graph) if weighting else graph
     return Kernel(
@@ -57,6 +60,23 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
         in_place=in_place,
         noise=noise_lines(graph, weighting),
     )
+
+
+def _candidates(
+    graph: Graph, values: Expressions, weighting: Weighting | None
+) -> Iterator[tuple[str, Program, tuple[tuple[str, int], ...]]]:
+    """The order, program and passes of each choice whose count is within ``CLOSE`` of the best one's."""
+    variants = [(graph, values)]
+    other = fused(graph)
+    if other is not graph:
+        variants.append((other, expressions(other)))
+    local = [linearised(g, v) for g, v in variants]
+    found = [(count, k, name) for k, (g, v) in enumerate(variants) for count, name in ranked(g, v, local[k])]
+    least = min(count for count, _, _ in found)
+    for count, k, name in found:
+        if count <= CLOSE * least:
+            program = lowered(*variants[k], local[k].jacobians(STRATEGIES[name]), weighting)
+            yield name, *optimise(program)
 
 
 def weights_of(graph: Graph, weighting: Weighting | None) -> tuple[Weight, ...]:

@@ -176,6 +176,11 @@ def product_from_left(chain: Chain) -> Matrix:
     return reduce(matmul, chain)
 
 
+def product_from_right(chain: Chain) -> Matrix:
+    """Multiply a chain out from the right."""
+    return reduce(lambda total, factor: matmul(factor, total), reversed(chain))
+
+
 def product(chain: Chain) -> Matrix:
     """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
     factors = list(chain)

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from .eliminate import STRATEGIES as STRATEGIES
+from .fuse import fused as fused
 from .graph_jacobian import Expressions as Expressions
+from .graph_jacobian import Linearised as Linearised
 from .graph_jacobian import expressions as expressions
 from .graph_jacobian import jacobians as jacobians
+from .graph_jacobian import linearised as linearised

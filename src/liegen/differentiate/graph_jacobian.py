@@ -40,10 +40,32 @@ def expressions(graph: Graph) -> Expressions:
     return Expressions(inputs, scalars)
 
 
+@dataclass(frozen=True, eq=False)
+class Linearised:
+    """The local blocks of a graph: its edges, the vertices to eliminate in order, and what is wanted.
+
+    ``wanted`` has for each (output, variable) the edge that is its Jacobian, and the shape of that.
+    """
+
+    edges: Mapping[tuple[int, int], Chain]
+    inner: tuple[int, ...]
+    wanted: Mapping[tuple[str, str], tuple[tuple[int, int], tuple[int, int]]]
+
+    def jacobians(self, strategy: Strategy) -> dict[tuple[str, str], Matrix]:
+        """Jacobian of each output by each variable, {(output, variable): matrix}."""
+        products = eliminate(self.edges, self.inner, strategy)
+        return {key: products.get(edge) or zeros(*shape) for key, (edge, shape) in self.wanted.items()}
+
+
 def jacobians(
     graph: Graph, values: Expressions, strategy: Strategy, *, through_storage: bool = False
 ) -> dict[tuple[str, str], Matrix]:
     """Jacobian of each output by each variable, {(output, variable): matrix}."""
+    return linearised(graph, values, through_storage=through_storage).jacobians(strategy)
+
+
+def linearised(graph: Graph, values: Expressions, *, through_storage: bool = False) -> Linearised:
+    """The local Jacobian blocks of all nodes between a variable and an output."""
     variables = {id(p.node): p for p in graph.parameters if p.variable}
     active = _active(graph)
     edges: dict[tuple[int, int], Chain] = {}
@@ -61,7 +83,7 @@ def jacobians(
         )
         for n, chain in zip(node.operands, blocks, strict=True):
             if chain is not None:
-                accumulate(edges, (id(n), id(node)), chain, strategy)
+                accumulate(edges, (id(n), id(node)), chain)
     # an output may feed others too: it ends at a vertex of its own
     sinks = {name: -k - 1 for k, (name, _) in enumerate(graph.outputs)}
     for name, node in graph.outputs:
@@ -75,14 +97,16 @@ def jacobians(
             sources[v] = -k - 1 - len(sinks)
             edges[sources[v], v] = chart.columns(values.scalars[v])
     begun = {v for v, source in sources.items() if v == source}
-    inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun]
-    products = eliminate(edges, inner, strategy)
-    return {
-        (name, p.name): products.get((sources[v], sinks[name]))
-        or zeros(node.manifold.form.dim, p.manifold.form.dim)
-        for name, node in graph.outputs
-        for v, p in variables.items()
-    }
+    inner = tuple(id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun)
+    return Linearised(
+        edges,
+        inner,
+        {
+            (name, p.name): ((sources[v], sinks[name]), (node.manifold.form.dim, p.manifold.form.dim))
+            for name, node in graph.outputs
+            for v, p in variables.items()
+        },
+    )
 
 
 def _rows(node: Node, preset: Preset, values: Expressions) -> Chain:

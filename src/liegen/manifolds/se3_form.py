@@ -6,11 +6,11 @@ part and C the derivative of M in the direction of the translation part.
 
 from __future__ import annotations
 
-from liegen.algebra.linear import Chain, Matrix, Vector, dot, matvec, transpose
+from liegen.algebra.linear import Chain, Matrix, Vector, dot, matmul, matvec, sub, transpose
 from liegen.coefficients import stumpff
 
 from . import dual
-from .form import Coords, PoseForm
+from .form import Compute, Coords, PoseForm, Rule
 from .so3_form import SO3Form, series
 
 
@@ -38,6 +38,20 @@ class SE3Form(PoseForm):
         """(phi, Jl^-1(phi) t); Jl^-1 is the transpose of Jr^-1, which the Jacobians need too."""
         phi = self.rotation.log(a[:4])
         return (*phi, *matvec(transpose(self.rotation.Jr_inv(phi, principal=True)), a[4:]))
+
+    def local_between(self) -> tuple[Compute, Rule]:
+        """The translation part is Jl^-1(phi) R_z^T (t_c - t_z), and Jl^-1(phi) R_z^T is Jr^-1(phi) R_c^T.
+
+        The Jacobian by x has that product.
+        """
+
+        def value(z: Coords, x: Coords, y: Coords) -> Vector:
+            c = self.between(x, y)
+            phi = self.rotation.local(z[:4], c[:4])
+            turned = matmul(self.rotation.Jr_inv(phi, principal=True), transpose(self.rotation.matrix(c[:4])))
+            return (*phi, *matvec(turned, sub(c[4:], z[4:])))
+
+        return value, self.local_between_blocks()
 
     def adjoint(self, a: Coords) -> Chain:
         """[[R, 0], [[t]x R, R]] as a product (micro Lie, eq. 175)."""

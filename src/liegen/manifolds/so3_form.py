@@ -6,7 +6,7 @@ from liegen.algebra import Scalar, lt, select
 from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, negate, scale, skew
 from liegen.coefficients import inverse_jacobian, log_factor, stumpff
 
-from .form import Coords, RotationForm
+from .form import Blocks, Compute, Coords, RotationForm, Rule
 
 
 def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:
@@ -21,6 +21,13 @@ def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:
         (xy + az, k + by * y, yz - ax),
         (xz - ay, yz + ax, k + bz * z),
     )
+
+
+def _log_scale(a: Coords) -> Scalar:
+    """The factor f, with the sign of w, of log(v, w) = f v."""
+    w = a[3]
+    sign = select(lt(w, 0), -1.0, 1.0)
+    return log_factor(w * sign) * sign
 
 
 class SO3Form(RotationForm):
@@ -56,9 +63,7 @@ class SO3Form(RotationForm):
 
     def log(self, a: Coords) -> Vector:
         """The short way round: q and -q are one rotation. At w = 0 the stored sign of the vector decides."""
-        *v, w = a
-        sign = select(lt(w, 0), -1.0, 1.0)
-        return scale(log_factor(w * sign) * sign, v)
+        return scale(_log_scale(a), a[:3])
 
     def adjoint(self, a: Coords) -> Chain:
         return (self.matrix(a),)
@@ -72,6 +77,51 @@ class SO3Form(RotationForm):
         """I + [d]x / 2 + D [d]x^2 (micro Lie, eq. 144)."""
         D, _ = inverse_jacobian(dot(d, d), principal=principal)
         return series(d, 0.5, D)
+
+    def local_between(self) -> tuple[Compute, Rule]:
+        by_group = self.local_between_blocks()
+
+        def value(z: Coords, x: Coords, y: Coords) -> Vector:
+            return self.local(z, self.between(x, y))
+
+        def blocks(r: Coords, z: Coords, x: Coords, y: Coords) -> Blocks:
+            by_z, _, by_y = by_group(r, z, x, y)  # type: ignore[call-arg]
+            turned: Matrix = tuple(negate(row) for row in self._turned_back(r, z, self.between(x, y)))
+            return by_z, (turned,), by_y
+
+        return value, blocks
+
+    def _turned_back(self, r: Coords, z: Coords, c: Coords) -> Matrix:
+        """Jr^-1(r) R_c^T for r = log(b), b = z^-1 c = (v, w), with no rotation matrix.
+
+        Jr^-1 is f/2 (w I + [v]x) + D r r^T with r = f v. In quaternions w I + [v]x is the vector part of
+        u -> b u and R_c^T that of u -> c^-1 u c, so their product is u -> z^-1 u c, whose entries
+        share their products with b; and R_c v is the vector part of c z^-1.
+        """
+        zx, zy, zz, zw = z
+        cx, cy, cz, cw = c
+        xx, yy, zz_, ww = zx * cx, zy * cy, zz * cz, zw * cw
+        near, far = (ww + xx, ww - xx), (yy + zz_, yy - zz_)
+        # for each axis: the symmetric and the skew part, and the vector part of c z^-1
+        axes = (
+            (zy * cz, zz * cy, zw * cx, zx * cw),
+            (zz * cx, zx * cz, zw * cy, zy * cw),
+            (zx * cy, zy * cx, zw * cz, zz * cw),
+        )
+        (yz, wx), (xz, wy), (xy, wz) = [(p + q, s + t) for p, q, s, t in axes]
+        seen = [(s - t) + (p - q) for p, q, s, t in axes]
+        K = (
+            (near[0] - far[0], xy + wz, xz - wy),
+            (xy - wz, near[1] + far[1], yz + wx),
+            (xz + wy, yz - wx, near[1] - far[1]),
+        )
+        f = _log_scale(self.between(z, c))
+        D, _ = inverse_jacobian(dot(r, r), principal=True)
+        half, along, moved = f * 0.5, scale(D, r), scale(f, seen)
+        return tuple(
+            tuple(half * k + u * v for k, v in zip(row, moved, strict=True))
+            for row, u in zip(K, along, strict=True)
+        )
 
     def matrix(self, a: Coords) -> Matrix:
         x, y, z, w = a

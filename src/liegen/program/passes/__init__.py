@@ -18,11 +18,12 @@ from .folding import fold
 from .scheduling import schedule
 from .sign_sharing import signs
 from .subexpressions import cse
+from .terms import terms
 
 Pass = Callable[[Program], Program]
 
 #: Run in turn, again and again until nothing changes.
-PASSES: tuple[Pass, ...] = (cse, fold, signs, factor, reciprocals)
+PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
 #: Run once at the end.
 FINAL: tuple[Pass, ...] = (dead, schedule)
 #: Rounds of ``PASSES`` at most.

@@ -34,7 +34,7 @@ def signs(program: Program) -> Program:
     bit, but for the sign of zeros. The count never grows: if nothing is gained, the program is returned.
     """
     program = dead(program)
-    nodes, place = _signed(program)
+    nodes, place = signed(program)
     demanded = [place[i] for indices in program.results for i in indices]
     conditions = [place[r.condition][0] for r in program.requirements]
     oriented = _Emission(nodes, *orientations(nodes, demanded))
@@ -56,10 +56,14 @@ def signs(program: Program) -> Program:
     return found if found.operations <= program.operations else program
 
 
-def _signed(program: Program) -> tuple[list[Node], list[tuple[int, int]]]:
+#: Operation, number, operands and their signs: what makes two nodes equal.
+Key = tuple[str, float, tuple[int, ...], tuple[int, ...]]
+
+
+def signed(program: Program) -> tuple[list[Node], list[tuple[int, int]]]:
     """The nodes of a program, equal ones shared, and each instruction as (node, sign)."""
     nodes: list[Node] = []
-    index: dict[object, int] = {}
+    index: dict[Key, int] = {}
     place: list[tuple[int, int]] = []
     zero = -1
     for ins in program.code:

@@ -1,0 +1,196 @@
+"""Sums and products of many operands share their parts, whatever the order in which they were written."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from liegen.program.program import Program, Requirement
+from liegen.program.rewrite import Builder
+
+from .dead_code import dead
+from .nary import Pairs, Term
+from .orientation import Kind, Node
+from .sign_sharing import signed, signs
+
+#: Longest sum or product that is taken apart.
+LONGEST = 24
+
+
+def terms(program: Program) -> Program:
+    """a b c and a b d share a b, a + b + c and a + b - d share a + b, a b + c + a d becomes a (b + d) + c.
+
+    Sums and products change their order, so values change by rounding of the terms. What is exact stays
+    together: a difference of inputs or constants, and what is scaled by a select. If nothing is gained the
+    program is returned.
+    """
+    program = dead(program)
+    work = _Work(program)
+    found = signs(work.emitted()) if work.improve() else program
+    return found if found.operations < program.operations else program
+
+
+class _Work:
+    """The nodes of a program, those of ``groups`` as sums and products of many operands."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.nodes, self.place = signed(program)
+        self.results = [self.place[i] for indices in program.results for i in indices]
+        self.conditions = [self.place[r.condition][0] for r in program.requirements]
+        self.uses = [0] * len(self.nodes)
+        for node in self.nodes:
+            for a in node.args:
+                self.uses[a] += 1
+        for n in (*[n for n, _ in self.results], *self.conditions):
+            self.uses[n] += 1
+        self.sums = self.flat(Kind.SUM)
+        self.products = self.flat(Kind.PRODUCT)
+
+    def kind(self, n: int) -> Kind | None:
+        """SUM or PRODUCT (no quotient) where the node may be taken apart."""
+        node = self.nodes[n]
+        return node.kind if node.op in ("add", "mul") else None
+
+    def whole(self, n: int) -> bool:
+        """Whether the node must stay as it is: it is exact, or keeps others from overflow."""
+        node = self.nodes[n]
+        if node.kind is Kind.SUM:
+            return all(self.nodes[a].kind is Kind.LEAF for a in node.args)
+        return any(self.nodes[a].kind is Kind.SELECT for a in node.args)
+
+    def flat(self, kind: Kind) -> dict[int, list[Term]]:
+        """Node -> its operands, inner sums (or products) with no other use taken apart."""
+        found: dict[int, list[Term]] = {}
+        for n, node in enumerate(self.nodes):
+            if self.kind(n) is not kind or self.whole(n):
+                continue
+            own: list[Term] = []
+            for a, s in zip(node.args, node.signs, strict=True):
+                inner = found.get(a)
+                if inner is not None and self.uses[a] == 1 and len(own) + len(inner) < LONGEST:
+                    del found[a]
+                    own += [(b, s * t) for b, t in inner]
+                else:
+                    own.append((a, s))
+            found[n] = own
+        return found
+
+    def add(self, node: Node) -> int:
+        self.nodes.append(node)
+        self.uses.append(0)
+        return len(self.nodes) - 1
+
+    def improve(self) -> bool:
+        """Share pairs, then take out factors; return whether anything was found."""
+        start = len(self.nodes)
+        self.share(self.products, Kind.PRODUCT, "mul")
+        self.share(self.sums, Kind.SUM, "add")
+        for n in list(self.sums):
+            while self.distribute(n):
+                pass
+        return len(self.nodes) > start
+
+    def share(self, groups: dict[int, list[Term]], kind: Kind, op: str) -> None:
+        pairs = Pairs(groups)
+        while found := pairs.best():
+            (a, b, relative), holders = found
+            whole = [g for g in holders if len(groups[g]) == 2]
+            new = self.add(Node(kind, op, 0.0, (a, b), (1, relative), 1))
+            self.uses[new] = len(holders)
+            pairs.replace((a, b, relative), holders, new)
+            del whole
+
+    def distribute(self, n: int) -> bool:
+        """Take the factor that most terms of a sum have out of them."""
+        own = self.sums[n]
+        holders: dict[int, list[int]] = {}
+        for k, (m, _) in enumerate(own):
+            if self.uses[m] == 1:
+                for factor in dict.fromkeys([f for f, _ in self.products.get(m, ())]):
+                    holders.setdefault(factor, []).append(k)
+        best = max(holders.items(), key=lambda item: len(item[1]), default=None)
+        if best is None or len(best[1]) < 2:
+            return False
+        factor, places = best
+        inner: list[Term] = []
+        for k in places:
+            m, s = own[k]
+            rest = list(self.products.pop(m))
+            rest.remove((factor, 1))
+            if len(rest) == 1:
+                inner.append((rest[0][0], s))
+            else:
+                self.products[m] = rest
+                inner.append((m, s))
+        total = self.add(Node(Kind.SUM, "add", 0.0, (), (), 1))
+        scaled = self.add(Node(Kind.PRODUCT, "mul", 0.0, (), (), 1))
+        self.sums[total], self.products[scaled] = inner, [(factor, 1), (total, 1)]
+        self.uses[total] = self.uses[scaled] = 1
+        own[places[0]] = (scaled, 1)
+        for k in reversed(places[1:]):
+            del own[k]
+        return True
+
+    def emitted(self) -> Program:
+        """The program of the changed nodes."""
+        builder = Builder()
+        index: dict[int, Term] = {}  # node -> its instruction, and the sign in which that has it
+
+        def operands(n: int) -> list[Term]:
+            found = self.sums.get(n) or self.products.get(n)
+            return found or list(zip(self.nodes[n].args, self.nodes[n].signs, strict=True))
+
+        def signed_value(n: int, s: int) -> int:
+            i, t = index[n]
+            node = self.nodes[n]
+            if s == t:
+                return i
+            return builder.const(-node.value) if node.op == "const" else builder.share("neg", (i,))
+
+        def emit(n: int) -> Term:
+            node, own = self.nodes[n], operands(n)
+            if node.kind is Kind.LEAF:
+                return builder.share(node.op, (), node.value), 1
+            if n in self.products:
+                i, s = index[own[0][0]]
+                for m, _ in own[1:]:
+                    j, t = index[m]
+                    i, s = builder.share("mul", (i, j)), s * t
+                return i, s
+            if n in self.sums:
+                return _sum(builder, [(index[m][0], s * index[m][1]) for m, s in own])
+            if node.kind is Kind.SUM:
+                return _sum(builder, [(index[m][0], s * index[m][1]) for m, s in own])
+            return builder.share(node.op, tuple([signed_value(m, s) for m, s in own])), 1
+
+        for root in (*self.conditions, *[n for n, _ in self.results]):
+            stack = [root]
+            while stack:
+                n = stack[-1]
+                missing = [m for m, _ in reversed(operands(n)) if m not in index]
+                if missing and n not in index:
+                    stack += missing
+                else:
+                    stack.pop()
+                    if n not in index:
+                        index[n] = emit(n)
+        flat = iter([signed_value(n, s) for n, s in self.results])
+        return replace(
+            self.program,
+            code=tuple(builder.code),
+            results=tuple(tuple([next(flat) for _ in own]) for own in self.program.results),
+            requirements=tuple(
+                Requirement(index[c][0], r.message)
+                for c, r in zip(self.conditions, self.program.requirements, strict=True)
+            ),
+        )
+
+
+def _sum(builder: Builder, own: list[Term]) -> Term:
+    """The sum from left to right, begun with the first term that is added; negative if there is none."""
+    sign = 1 if any(s > 0 for _, s in own) else -1
+    first = next(k for k, (_, s) in enumerate(own) if s == sign)
+    total = own[first][0]
+    for i, s in (*own[:first], *own[first + 1 :]):
+        total = builder.share("add" if s == sign else "sub", (total, i))
+    return total, sign
