@@ -35,20 +35,24 @@ class Loaded:
     variant: Variant
 
     def run(self, inputs: Array, output: Array) -> Run:
-        """Call it over all inputs, each call into the same output buffer."""
+        """Call it over all inputs, into the same rows of outputs again and again."""
         function = self.library["drive"]
         function.argtypes = [ctypes.c_ssize_t, ctypes.c_void_p, ctypes.c_void_p]
         function.restype = None
         n, source, target = len(inputs), inputs.ctypes.data, output.ctypes.data
         return lambda: function(n, source, target)
 
+    def buffer(self) -> Array:
+        """Room for its outputs, a row a call."""
+        return np.zeros((self.variant.rows, sum(port.size for port in self.task.outputs)))
+
     def results(self, inputs: Array) -> Array:
         """All outputs by input, (inputs, outputs), row-major port after port."""
-        buffer = np.zeros(sum(port.size for port in self.task.outputs))
+        buffer = self.buffer()
         found: list[Array] = []
         for k in range(len(inputs)):
             self.run(inputs[k : k + 1], buffer)()
-            found.append(buffer.copy())
+            found.append(buffer[0].copy())
         return _row_major(self.task, np.array(found)) if self.variant.column_major else np.array(found)
 
 
@@ -78,7 +82,8 @@ def load(task: Task, variant: Variant, flags: Flags, folder: Path) -> Loaded:
     """
     folder.mkdir(parents=True, exist_ok=True)
     names = {"prototype": variant.prototype, "call": variant.call}
-    text = lay_out("bench/driver.c.j2", {**names, "inputs": sum(p.size for p in task.inputs)})
+    sizes = {"inputs": sum(p.size for p in task.inputs), "outputs": sum(p.size for p in task.outputs)}
+    text = lay_out(variant.driver, {**names, **sizes, "rows": variant.rows})
     sources = {**variant.sources, "driver.c": text}
     for name, content in sources.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

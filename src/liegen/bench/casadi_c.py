@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from liegen.algebra.casadi_backend import ca
@@ -13,7 +12,7 @@ from liegen.differentiate import STRATEGIES, Expressions, expressions, jacobians
 from liegen.differentiate.local import local_blocks
 from liegen.manifolds import Operation
 
-from .variant import AnyFunction, Task, Variant, offsets
+from .variant import AnyFunction, Task, Variant, fastest, offsets
 
 NAME = "CasADi"
 Blocks = Mapping[tuple[str, str], Matrix]
@@ -27,15 +26,14 @@ def variants(task: Task) -> tuple[Variant, ...]:
     function = task.function
     if function.weighting:
         return ()
-    times = [time.perf_counter()]
     values = expressions(function.graph)
-    ruled = jacobians(function.graph, values, STRATEGIES["reverse"])
-    times.append(time.perf_counter())
-    stored = through_storage(function, values)
-    times.append(time.perf_counter())
+
+    def ruled() -> Blocks:
+        return jacobians(function.graph, values, STRATEGIES["reverse"])
+
     return (
-        _variant(task, "casadi_rules", "liegen's rules", values, ruled, times[1] - times[0]),
-        _variant(task, "casadi_storage", "AD through the storage", values, stored, times[2] - times[1]),
+        _variant(task, "casadi_rules", "liegen's rules", values, ruled),
+        _variant(task, "casadi_storage", "AD through the storage", values, lambda: through_storage(function, values)),
     )
 
 
@@ -62,17 +60,11 @@ def through_storage(function: AnyFunction, values: Expressions) -> dict[tuple[st
 
 
 def _variant(
-    task: Task, name: str, note: str, values: Expressions, blocks: Blocks, seconds: float
+    task: Task, name: str, note: str, values: Expressions, derive: Callable[[], Blocks]
 ) -> Variant:
     graph = task.function.graph
-    inputs = [ca.vertcat(*symbols) for symbols in values.inputs.values()]
-    outputs = [ca.vertcat(*values.scalars[id(node)]) for _, node in graph.outputs]
-    outputs += [ca.densify(ca.vertcat(*(x for row in block for x in row))) for block in blocks.values()]
-    start = time.perf_counter()
-    generator = ca.CodeGenerator(name)
-    generator.add(ca.Function(name, inputs, outputs))
-    text = generator.dump()
-    seconds += time.perf_counter() - start
+    blocks = derive()
+    text, seconds = fastest(lambda: _generated(task, name, values, derive()))
     call = (
         f"const double *arg[] = {{{', '.join(f'a + {k}' for k in offsets(task.inputs))}}};",
         f"double *res[] = {{{', '.join(f'b + {k}' for k in offsets(task.outputs))}}};",
@@ -81,3 +73,12 @@ def _variant(
     prototype = f"int {name}(const double **, double **, long long int *, double *, int);"
     counts = lowered(graph, values, blocks).op_counts()
     return Variant(NAME, ca.__version__, note, prototype, call, {f"{name}.c": text}, counts, seconds)
+
+
+def _generated(task: Task, name: str, values: Expressions, blocks: Blocks) -> str:
+    inputs = [ca.vertcat(*symbols) for symbols in values.inputs.values()]
+    outputs = [ca.vertcat(*values.scalars[id(node)]) for _, node in task.function.graph.outputs]
+    outputs += [ca.densify(ca.vertcat(*(x for row in block for x in row))) for block in blocks.values()]
+    generator = ca.CodeGenerator(name)
+    generator.add(ca.Function(name, inputs, outputs))
+    return str(generator.dump())

@@ -9,8 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from . import draws
 from .agreement import Errors, errors
 from .build import Array, Loaded, load
@@ -151,7 +149,7 @@ def _loaded(
 
 
 def _times(loaded: Sequence[Loaded], inputs: Array, plan: Plan) -> list[Time]:
-    buffers = [np.zeros(sum(port.size for port in one.task.outputs)) for one in loaded]
+    buffers = [one.buffer() for one in loaded]
     runs: list[Callable[[], None]] = [one.run(inputs, b) for one, b in zip(loaded, buffers, strict=True)]
     measured = in_turn(runs, len(inputs), plan.rounds)
     return [

@@ -6,7 +6,6 @@ import importlib
 import importlib.metadata
 import re
 import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from liegen.manifolds import ManifoldForm
 from .operations import counted
 from .programs import EIGEN_OPTIONS, Rows, closed_forms, eigen_wrapper, prototype
 from .symforce_formulas import FORMULAS
-from .variant import Absent, Task, Variant
+from .variant import Absent, Task, Variant, fastest
 
 NAME = "SymForce"
 SYMBOL = "symforce_call"
@@ -49,10 +48,8 @@ def variants(task: Task) -> tuple[Variant, ...]:
 
 
 def _variant(task: Task, sf: Any, note: str, outputs: Outputs) -> Variant:
-    start = time.perf_counter()
     inputs = {p.name: sf.matrix_type_from_shape((p.size, 1)).symbolic(p.name) for p in task.inputs}
-    text = _generated(task, sf, inputs, outputs(inputs))
-    seconds = time.perf_counter() - start
+    text, seconds = fastest(lambda: _generated(task, sf, inputs, outputs(inputs)))
     everything = frozenset(port.name for port in task.outputs)
     name = re.search(r"^void (\w+)\(", text, re.MULTILINE)  # its own spelling of the task's name
     files = eigen_wrapper(task, SYMBOL, f"sym::{name[1] if name else task.name}", "generated.h", everything)

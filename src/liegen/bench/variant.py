@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from liegen.define import Function
 from liegen.program import Port
 
 AnyFunction = Function[..., Any]
+T = TypeVar("T")
+#: Code generation is timed this often, once if it takes longer than this [s].
+REPEATS, LONG = 3, 0.3
 Flags = tuple[str, ...]
 
 #: What every variant is compiled with, by the name that tables show.
@@ -31,7 +35,8 @@ class Variant:
     ``note`` is the formulation in a few words, ``call`` the C statements between ``a`` and ``b``, ``sources``
     its files by name, ``options`` further compiler options. Matrices are row-major unless ``column_major``.
     ``operations`` are those of the program by kind, as its generator knows or writes them; ``seconds`` is the
-    time that it took to generate, after import. Both are None where nothing is generated.
+    time that it took to generate, after import. Both are None where nothing is generated. ``driver`` is the
+    template of its loop over inputs, which writes ``rows`` rows of outputs before it begins again.
     """
 
     peer: str
@@ -44,6 +49,8 @@ class Variant:
     seconds: float | None = None
     column_major: bool = False
     options: tuple[str, ...] = ()
+    driver: str = "bench/driver.c.j2"
+    rows: int = 1
 
     @property
     def label(self) -> str:
@@ -83,6 +90,17 @@ class Task:
 
 #: Generates the variants of one peer; raises Absent where that cannot be. Empty: it has no such formula.
 Maker = Callable[[Task], tuple[Variant, ...]]
+
+
+def fastest(generate: Callable[[], T]) -> tuple[T, float]:
+    """What it gives and the seconds that it took: the least of three times, of one where that is long."""
+    seconds: list[float] = []
+    while True:
+        start = time.perf_counter()
+        result = generate()
+        seconds.append(time.perf_counter() - start)
+        if len(seconds) == REPEATS or seconds[0] > LONG:
+            return result, min(seconds)
 
 
 def offsets(ports: tuple[Port, ...]) -> tuple[int, ...]:

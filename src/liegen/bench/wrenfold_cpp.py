@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import importlib.metadata
 import re
-import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -13,7 +12,7 @@ from liegen.algebra import Algebra
 from liegen.manifolds import ManifoldForm
 
 from .programs import EIGEN_OPTIONS, Rows, closed_forms, eigen_wrapper, prototype
-from .variant import Absent, Task, Variant
+from .variant import Absent, Task, Variant, fastest
 from .wrenfold_formulas import FORMULAS
 
 NAME = "wrenfold"
@@ -46,10 +45,8 @@ def variants(task: Task) -> tuple[Variant, ...]:
 
 def _variant(task: Task, sym: Any, note: str, outputs: Outputs) -> Variant:
     wf: Any = _module("code_generation")
-    start = time.perf_counter()
-    texts = [(passes, _generated(task, wf, sym, outputs, passes)) for passes in FACTORING]
-    seconds = (time.perf_counter() - start) / len(FACTORING)
-    passes, text = min(texts, key=lambda pair: sum(operations(pair[1]).values()))
+    made = [(n, *fastest(lambda n=n: _generated(task, wf, sym, outputs, n))) for n in FACTORING]
+    passes, text, seconds = min(made, key=lambda row: sum(operations(row[1]).values()))
     version = importlib.metadata.version("wrenfold")
     optional = frozenset(port.name for port in task.outputs[len(task.function.graph.outputs) :])
     files = eigen_wrapper(task, SYMBOL, f"gen::{task.name}", "generated.h", optional)
