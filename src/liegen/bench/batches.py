@@ -70,7 +70,9 @@ def profile(task: Task, *, sizes: Sequence[int], rounds: int, seed: int, flags: 
         (single,) = ours.variants(task)
         calls = [load(task, v, FLAGS[flags], folder / v.note) for v in (single, chained(task, single))]
         times = in_turn([c.run(inputs, c.buffer()) for c in calls], len(inputs), rounds)
-        loaded = {layout: load(task, batched(task, layout), FLAGS[flags], folder / layout) for layout in LAYOUTS}
+        loaded = {
+            layout: load(task, batched(task, layout), FLAGS[flags], folder / layout) for layout in LAYOUTS
+        }
         found = tuple(_size(n, loaded, machine, ceilings, inputs, rounds) for n in kept)
     scalar, chain = map(min, times)
     return Profile(

@@ -18,7 +18,7 @@ from liegen.emit.templates import lay_out
 from liegen.errors import ToolError
 from liegen.native import find_compiler
 
-from .variant import Absent, Flags, Task, Variant, offsets
+from .variant import AbsentError, Flags, Task, Variant, offsets
 
 Array = NDArray[np.float64]
 Run = Callable[[], None]
@@ -78,7 +78,7 @@ def load(task: Task, variant: Variant, flags: Flags, folder: Path) -> Loaded:
     """Compile a variant and its driver in a folder of their own and load them.
 
     The flags are those of compilation only: linked with -ffast-math, a library would make the whole process
-    flush denormal numbers to zero. Raises Absent with the compiler's first error.
+    flush denormal numbers to zero. Raises AbsentError with the compiler's first error.
     """
     folder.mkdir(parents=True, exist_ok=True)
     names = {"prototype": variant.prototype, "call": variant.call}
@@ -89,7 +89,9 @@ def load(task: Task, variant: Variant, flags: Flags, folder: Path) -> Loaded:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content, encoding="utf-8")
     objects = [
-        _object(folder, name, (*flags, *variant.options)) for name in sources if name.endswith((".c", CPP_SUFFIX))
+        _object(folder, name, (*flags, *variant.options))
+        for name in sources
+        if name.endswith((".c", CPP_SUFFIX))
     ]
     link = find_cpp_compiler() if any(n.endswith(CPP_SUFFIX) for n in sources) else find_compiler()
     library = folder / "variant.so"
@@ -101,7 +103,7 @@ def _object(folder: Path, name: str, flags: Sequence[str]) -> Path:
     cpp = name.endswith(CPP_SUFFIX)
     command = find_cpp_compiler() if cpp else find_compiler()
     if not command:
-        raise Absent(f"no {'C++' if cpp else 'C'} compiler was found")
+        raise AbsentError(f"no {'C++' if cpp else 'C'} compiler was found")
     target = folder / f"{name}.o"
     standard = ("-std=c++17",) if cpp else ()
     place = str(folder / name)
@@ -113,7 +115,7 @@ def _compiled(command: Sequence[str]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
-        raise Absent(f"{Path(command[0]).name} refused it: {lines[0].strip()}")
+        raise AbsentError(f"{Path(command[0]).name} refused it: {lines[0].strip()}")
 
 
 def compiler_version() -> str:

@@ -33,7 +33,13 @@ def variants(task: Task) -> tuple[Variant, ...]:
 
     return (
         _variant(task, "casadi_rules", "liegen's rules", values, ruled),
-        _variant(task, "casadi_storage", "AD through the storage", values, lambda: through_storage(function, values)),
+        _variant(
+            task,
+            "casadi_storage",
+            "AD through the storage",
+            values,
+            lambda: through_storage(function, values),
+        ),
     )
 
 
@@ -59,9 +65,7 @@ def through_storage(function: AnyFunction, values: Expressions) -> dict[tuple[st
     return found
 
 
-def _variant(
-    task: Task, name: str, note: str, values: Expressions, derive: Callable[[], Blocks]
-) -> Variant:
+def _variant(task: Task, name: str, note: str, values: Expressions, derive: Callable[[], Blocks]) -> Variant:
     graph = task.function.graph
     blocks = derive()
     text, seconds = fastest(lambda: _generated(task, name, values, derive()))

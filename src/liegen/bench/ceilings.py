@@ -27,7 +27,7 @@ CFunction = Any  # of ctypes
 
 @dataclass(frozen=True)
 class Ceilings:
-    """Multiply-adds a nanosecond, of numbers and of vectors of ``width`` numbers: instructions, not numbers."""
+    """Multiply-adds a nanosecond, of numbers and of vectors of ``width`` numbers (as instructions)."""
 
     scalar: float
     vector: float

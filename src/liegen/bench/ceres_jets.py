@@ -15,7 +15,7 @@ from liegen.emit.templates import lay_out
 from liegen.manifolds import ManifoldForm
 
 from .programs import prototype
-from .variant import Absent, Task, Variant, offsets
+from .variant import AbsentError, Task, Variant, offsets
 
 NAME = "Ceres"
 SYMBOL = "ceres_call"
@@ -71,7 +71,7 @@ def variants(task: Task) -> tuple[Variant, ...]:
 
 def _version() -> str:
     if not VERSION_FILE.is_file():
-        raise Absent(f"there is no {VERSION_FILE}; it comes with the system's package (libceres-dev)")
+        raise AbsentError(f"there is no {VERSION_FILE}; it comes with the system's package (libceres-dev)")
     found = re.findall(r"define CERES_VERSION_(?:MAJOR|MINOR|REVISION) (\d+)", VERSION_FILE.read_text())
     return ".".join(found)
 

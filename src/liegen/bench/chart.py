@@ -1,4 +1,4 @@
-"""A bar chart of a comparison, as SVG: time of each variant over that of liegen, the same bytes for the same data."""
+"""A bar chart of a comparison as SVG: time over that of liegen. The same data give the same bytes."""
 
 from __future__ import annotations
 

@@ -29,20 +29,25 @@ def counted(text: str) -> dict[str, int]:
 
 def _of(expression: str) -> Counter[str]:
     counts: Counter[str] = Counter()
-    for _, power in _POWER.findall(expression):
-        counts["mul"] += int(power).bit_length() + int(power).bit_count() - 2
-    plain = _CONSTANT.sub(lambda m: "k" if not m.group(0)[0].isdigit() else "k", _POWER.sub("p", expression))
+    for match in _POWER.finditer(expression):
+        power = int(match[2])
+        counts["mul"] += power.bit_length() + power.bit_count() - 2
+    plain = _CONSTANT.sub("k", _POWER.sub("p", expression))
     plain = re.sub(r"std::(min|max)<Scalar>", r"std::\1", plain)
-    for name in _CALL.findall(plain):
-        counts[SIMPLE.get(name, name)] += 1
+    for match in _CALL.finditer(plain):
+        counts[SIMPLE.get(match[1], match[1])] += 1
     before = "("
-    for token in _TOKEN.findall(_CALL.sub("", plain)):
+    for token in _tokens(_CALL.sub("", plain)):
         if token in "+-" and before in "(+-*/<>=":
             counts["neg"] += token == "-"
         elif token in _KINDS:
             counts[_KINDS[token]] += 1
         before = token
     return counts
+
+
+def _tokens(expression: str) -> list[str]:
+    return [match.group(0) for match in _TOKEN.finditer(expression)]
 
 
 _KINDS = {"+": "add", "-": "sub", "*": "mul", "/": "div", "<": "lt", ">": "lt", "<=": "lt", ">=": "lt"}

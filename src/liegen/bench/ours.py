@@ -53,8 +53,14 @@ def batches(task: Task) -> tuple[Variant, ...]:
     kernel = task.function.kernel
     name = f"{PACKAGE}_{kernel.name}_batch"
     total = [sum(port.size for port in ports) for ports in (task.inputs, task.outputs)]
-    structs = [f"{PACKAGE}_in x{k} = {{a + {start}, {total[0]}, 1, NULL}};" for k, start in enumerate(offsets(task.inputs))]
-    structs += [f"{PACKAGE}_out y{k} = {{b + {start}, {total[1]}, 1}};" for k, start in enumerate(offsets(task.outputs))]
+    structs = [
+        f"{PACKAGE}_in x{k} = {{a + {start}, {total[0]}, 1, NULL}};"
+        for k, start in enumerate(offsets(task.inputs))
+    ]
+    structs += [
+        f"{PACKAGE}_out y{k} = {{b + {start}, {total[1]}, 1}};"
+        for k, start in enumerate(offsets(task.outputs))
+    ]
     arguments = [f"x{k}" for k in range(len(task.inputs))] + [f"y{k}" for k in range(len(task.outputs))]
     call = (*structs, f"{name}(m, {', '.join(arguments)}, NULL);")
     return (

@@ -38,7 +38,7 @@ def rows_of(port: Port, flat: Sequence[Any]) -> list[list[Any]]:
 
 def eigen_wrapper(
     task: Task, symbol: str, function: str, header: str, pointers: frozenset[str]
-) -> Mapping[str, object]:
+) -> Mapping[str, str]:
     """C++ that calls a function of Eigen types by plain pointers, as source text by file name.
 
     ``pointers`` are the ports that the function takes by pointer instead of reference.

@@ -12,8 +12,8 @@ from pathlib import Path
 from . import draws
 from .agreement import Errors, errors
 from .build import Array, Loaded, load
-from .timing import in_turn
-from .variant import FLAGS, Absent, Maker, Missing, Task, Variant
+from .timing import in_turn, median_ratio
+from .variant import FLAGS, AbsentError, Maker, Missing, Task, Variant
 
 #: Variants whose results differ more from the reference, relative to max(1, largest entry), are not timed.
 AGREEMENT = 1e-9
@@ -21,7 +21,7 @@ AGREEMENT = 1e-9
 
 @dataclass(frozen=True)
 class Plan:
-    """How long and on what: distinct inputs in a round, rounds, the inputs' seed, flags, reference samples."""
+    """How long and on what: distinct inputs in a round, rounds, their seed, flags, reference samples."""
 
     calls: int = 10_000
     rounds: int = 100
@@ -120,7 +120,7 @@ def generated(task: Task, makers: Mapping[str, Maker]) -> tuple[list[Variant], l
     for peer, maker in makers.items():
         try:
             variants = maker(task)
-        except Absent as reason:
+        except AbsentError as reason:
             missing.append(Missing(peer, str(reason)))
         else:
             made += variants
@@ -138,7 +138,7 @@ def _loaded(
         number, (flags, variant) = job
         try:
             return load(task, variant, FLAGS[flags], folder / str(number))
-        except Absent as reason:
+        except AbsentError as reason:
             return Missing(variant.label, str(reason))
 
     with ThreadPoolExecutor(plan.workers) as pool:
@@ -153,6 +153,10 @@ def _times(loaded: Sequence[Loaded], inputs: Array, plan: Plan) -> list[Time]:
     runs: list[Callable[[], None]] = [one.run(inputs, b) for one, b in zip(loaded, buffers, strict=True)]
     measured = in_turn(runs, len(inputs), plan.rounds)
     return [
-        Time(min(ns), statistics.median(ns), statistics.median(a / b for a, b in zip(ns, measured[0], strict=True)))
+        Time(
+            min(ns),
+            statistics.median(ns),
+            median_ratio(ns, measured[0]),
+        )
         for ns in measured
     ]

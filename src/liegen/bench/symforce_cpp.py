@@ -16,7 +16,7 @@ from liegen.manifolds import ManifoldForm
 from .operations import counted
 from .programs import EIGEN_OPTIONS, Rows, closed_forms, eigen_wrapper, prototype
 from .symforce_formulas import FORMULAS
-from .variant import Absent, Task, Variant, fastest
+from .variant import AbsentError, Task, Variant, fastest
 
 NAME = "SymForce"
 SYMBOL = "symforce_call"
@@ -31,7 +31,7 @@ def _module(name: str) -> Any:
         symforce.set_epsilon_to_number()  # 2.2e-15, its number for double precision
         return importlib.import_module(f"symforce.{name}")
     except ImportError as error:
-        raise Absent(f"SymForce is not installed ({error})") from None
+        raise AbsentError(f"SymForce is not installed ({error})") from None
 
 
 def variants(task: Task) -> tuple[Variant, ...]:
@@ -108,7 +108,11 @@ def _derived(task: Task, sf: Any, how: str, given: Mapping[str, Any]) -> Rows:
             argument = elements[p.name]
             parts = argument if p.manifold.form.parts else [argument]
             blocks = [derive(part, parts) for part in result]
-            rows = [[entry for block in row for entry in block[k, :]] for row in blocks for k in range(row[0].shape[0])]
+            rows = [
+                [entry for block in row for entry in block[k, :]]
+                for row in blocks
+                for k in range(row[0].shape[0])
+            ]
             order = ORDERS.get(p.manifold.form.name)
             found[f"{name}_D_{p.name}"] = [[row[k] for k in order] for row in rows] if order else rows
     return found

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import statistics
 import time
 from collections.abc import Callable, Sequence
+
+
+def median_ratio(times: Sequence[float], base: Sequence[float]) -> float:
+    """The median over the rounds of one variant's time by that of another in the same round."""
+    return statistics.median(a / b for a, b in zip(times, base, strict=True))
 
 
 def in_turn(runs: Sequence[Callable[[], object]], calls: int, rounds: int) -> list[list[float]]:

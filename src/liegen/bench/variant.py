@@ -24,7 +24,7 @@ FLAGS: Mapping[str, Flags] = {
 }
 
 
-class Absent(Exception):
+class AbsentError(Exception):
     """A peer cannot be used here; the text says why."""
 
 
@@ -88,7 +88,7 @@ class Task:
         return self.function.kernel.jacobians.outputs
 
 
-#: Generates the variants of one peer; raises Absent where that cannot be. Empty: it has no such formula.
+#: Generates the variants of one peer; raises AbsentError where that cannot be. Empty: it has no such formula.
 Maker = Callable[[Task], tuple[Variant, ...]]
 
 

@@ -12,7 +12,7 @@ from liegen.algebra import Algebra
 from liegen.manifolds import ManifoldForm
 
 from .programs import EIGEN_OPTIONS, Rows, closed_forms, eigen_wrapper, prototype
-from .variant import Absent, Task, Variant, fastest
+from .variant import AbsentError, Task, Variant, fastest
 from .wrenfold_formulas import FORMULAS
 
 NAME = "wrenfold"
@@ -26,7 +26,7 @@ def _module(name: str) -> Any:
     try:
         return importlib.import_module(f"wrenfold.{name}")
     except ImportError as error:
-        raise Absent(f"wrenfold is not installed ({error})") from None
+        raise AbsentError(f"wrenfold is not installed ({error})") from None
 
 
 def variants(task: Task) -> tuple[Variant, ...]:
@@ -62,9 +62,7 @@ def _generated(task: Task, wf: Any, sym: Any, outputs: Outputs, passes: int) -> 
     description = wf.FunctionDescription(name=task.name)
     types: Any = _module("type_info")
     given = {
-        port.name: description.add_input_argument(
-            port.name, types.MatrixType(port.size, 1)
-        )
+        port.name: description.add_input_argument(port.name, types.MatrixType(port.size, 1))
         for port in task.inputs
     }
     values = len(task.function.graph.outputs)
