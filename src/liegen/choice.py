@@ -17,7 +17,7 @@ from liegen.program.passes.sign_sharing import Key, signed
 from liegen.trace import Graph
 
 #: An order is given up where its products are more than so many times those of the best one so far.
-SLACK = 3
+SLACK = 1.5
 
 
 class TooManyError(Exception):

@@ -23,7 +23,7 @@ from liegen.program.passes import optimise
 from liegen.trace import Graph, formula, jacobian_formulas
 
 #: Orders whose counts are that close to the best one's are carried out.
-CLOSE = 1.01
+CLOSE = 1.005
 
 
 def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool = False) -> Kernel:

@@ -9,6 +9,7 @@ from typing import Any
 from liegen.define import Function
 from liegen.kernel import Kernel
 from liegen.manifolds import Leaf
+from liegen.program.kinds import kinds as grouped
 from liegen.trace import Graph, jacobian_formulas, latex
 from liegen.trace.jacobian_text import legend
 
@@ -73,7 +74,7 @@ def explanation(function: AnyFunction) -> str:
     lines += _section("Conventions", kernel.conventions)
     counted = "Operations with Jacobians" if kernel.variables else "Operations"
     lines += _section(f"{counted}, after each pass", _pass_rows(kernel))
-    lines += _section("Operations by kind", _kind_rows(kernel))
+    lines += _section("Operations by kind", [*_kind_rows(kernel), *_KIND_NOTES])
     return "\n".join(lines) + "\n"
 
 
@@ -82,6 +83,12 @@ def latex_explanation(function: AnyFunction) -> str:
     graph, row = function.graph, summary(function)
     comments = [f"{row.name}({row.arguments}) -> {row.results}", *legend(jacobian_formulas(graph))]
     return "".join(f"% {line}\n" for line in comments) + latex(graph) + "\n"
+
+
+_KIND_NOTES = (
+    "call: of these, calls of libm",
+    "fused: of these, pairs a b + c that are one instruction with fused multiply-add",
+)
 
 
 def _section(title: str, lines: Iterable[str]) -> list[str]:
@@ -110,6 +117,8 @@ def _kind_rows(kernel: Kernel) -> list[str]:
     rows: list[Sequence[Any]] = [("", title, "with Jacobians")]
     rows += [(kind, alone.get(kind, 0), both.get(kind, 0)) for kind in kinds]
     rows.append(("total", kernel.value.operations, kernel.jacobians.operations))
+    short, long = grouped(kernel.value), grouped(kernel.jacobians)
+    rows += [(kind, short[kind], long[kind]) for kind in ("call", "fused")]
     lines = [(f"{a!s:<8}  {b!s:>8}", f"  {c!s:>14}") for a, b, c in rows]
     return [first + (second if kernel.variables else "") for first, second in lines]
 

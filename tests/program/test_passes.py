@@ -27,6 +27,7 @@ from liegen.program.passes import (
     reciprocals,
     schedule,
     signs,
+    terms,
 )
 from liegen.program.passes.divisions import cost
 from liegen.program.passes.scheduling import live_values
@@ -52,7 +53,7 @@ def results(program, slots):
 @settings(max_examples=250, deadline=None)
 @given(program=programs(), special=VALUES, generic=GENERIC)
 def test_values_stay_the_same(step, program, special, generic):
-    rounds = step in (factor, reciprocals, optimised)  # differently, at the 50th digit
+    rounds = step in (factor, reciprocals, terms, optimised)  # differently, at the 50th digit
     values = generic if rounds else special
     slots = run(program, values)
     assume(well_conditioned(slots) and not (rounds and on_an_edge(program, slots)))
@@ -85,7 +86,7 @@ def test_idempotent(step, program):
     assert step(once) == once
 
 
-@pytest.mark.parametrize("step", [fold, signs, factor, optimised], ids=lambda step: step.__name__)
+@pytest.mark.parametrize("step", [fold, signs, terms, factor, optimised], ids=lambda step: step.__name__)
 @fast
 @given(program=programs())
 def test_a_second_run_adds_nothing(step, program):

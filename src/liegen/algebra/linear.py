@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import reduce
+from itertools import pairwise
 
 from .base import Scalar
 
@@ -120,9 +121,19 @@ def matvec(a: Matrix, v: Sequence[Scalar]) -> Vector:
 
 
 def matmul(a: Matrix, b: Matrix) -> Matrix:
-    """Return A B."""
-    columns = transpose(b)
-    return tuple(tuple(dot(row, c) for c in columns) for row in a)
+    """Return A B; rows of structural zeros cost nothing, rows of the identity take over rows of B."""
+    nothing = (0,) * len(b[0])
+    rows: list[tuple[Scalar, ...]] = []
+    for row in a:
+        terms = [(x, other) for x, other in zip(row, b, strict=True) if type(x) is not int or x]
+        if not terms:
+            rows.append(nothing)
+        elif len(terms) == 1 and type(terms[0][0]) is int and terms[0][0] == 1:
+            rows.append(terms[0][1])
+        else:
+            columns = range(len(nothing))
+            rows.append(tuple([total([times(x, other[j]) for x, other in terms]) for j in columns]))
+    return tuple(rows)
 
 
 def elementwise(f: Callable[[Scalar, Scalar], Scalar], a: Matrix, b: Matrix) -> Matrix:
@@ -132,7 +143,11 @@ def elementwise(f: Callable[[Scalar, Scalar], Scalar], a: Matrix, b: Matrix) -> 
 
 def matadd(a: Matrix, b: Matrix) -> Matrix:
     """Return A + B."""
-    return elementwise(plus, a, b)
+    return tuple([s if _nothing(r) else r if _nothing(s) else add(r, s) for r, s in zip(a, b, strict=True)])
+
+
+def _nothing(row: Sequence[Scalar]) -> bool:
+    return not any(type(x) is not int or x for x in row)
 
 
 def matscale(k: Scalar, a: Matrix) -> Matrix:
@@ -162,13 +177,9 @@ def block_diagonal(*blocks: Matrix) -> Matrix:
 
 def multiply_cost(a: Matrix, b: Matrix) -> int:
     """Number of scalar products in A B that structure does not make free."""
-    heavy_a = [[int(not is_structural(x)) for x in row] for row in a]
-    columns = transpose(b)
-    return sum(
-        sum(h for h, y in zip(row, c, strict=True) if not is_structural(y))
-        for row in heavy_a
-        for c in columns
-    )
+    in_columns = [sum([not is_structural(x) for x in column]) for column in transpose(a)]
+    in_rows = [sum([not is_structural(x) for x in row]) for row in b]
+    return sum([m * n for m, n in zip(in_columns, in_rows, strict=True)])
 
 
 def product_from_left(chain: Chain) -> Matrix:
@@ -184,8 +195,12 @@ def product_from_right(chain: Chain) -> Matrix:
 def product(chain: Chain) -> Matrix:
     """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
     factors = list(chain)
-    while len(factors) > 1:
-        costs = [multiply_cost(factors[k], factors[k + 1]) for k in range(len(factors) - 1)]
+    costs = [multiply_cost(a, b) for a, b in pairwise(factors)]
+    while costs:
         k = costs.index(min(costs))
         factors[k : k + 2] = [matmul(factors[k], factors[k + 1])]
+        del costs[k]
+        for i in (k - 1, k):
+            if 0 <= i < len(costs):
+                costs[i] = multiply_cost(factors[i], factors[i + 1])
     return factors[0]

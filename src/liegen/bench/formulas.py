@@ -94,7 +94,7 @@ def _sighted(draw: Draw, case: Case) -> Mapping[str, Value]:
     distance = draw.uniform(0.5, 5.0) * case.spread
     ray = distance * np.array([np.cos(direction), np.sin(direction)])
     off = draw.vector(2, spread=0.1)
-    return {"x": x, "p": x.transform_from(ray), "z": R2.from_storage([direction, distance] + off)}
+    return {"x": x, "p": x.transform_from(ray), "z": R2.from_storage(np.array([direction, distance]) + off)}
 
 
 @factor(sample=_sighted)

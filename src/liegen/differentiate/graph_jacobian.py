@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from liegen.algebra.casadi_backend import ca
-from liegen.algebra.linear import Chain, Matrix, eye, zeros
+from liegen.algebra.linear import Chain, Matrix, eye, stacked, transpose, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
@@ -44,17 +44,21 @@ def expressions(graph: Graph) -> Expressions:
 class Linearised:
     """The local blocks of a graph: its edges, the vertices to eliminate in order, and what is wanted.
 
-    ``wanted`` has for each (output, variable) the edge that is its Jacobian, and the shape of that.
+    ``wanted`` has for each (output, variable) the edges that are its Jacobian, one below the other, and
+    their shapes.
     """
 
     edges: Mapping[tuple[int, int], Chain]
     inner: tuple[int, ...]
-    wanted: Mapping[tuple[str, str], tuple[tuple[int, int], tuple[int, int]]]
+    wanted: Mapping[tuple[str, str], tuple[tuple[tuple[int, int], tuple[int, int]], ...]]
 
     def jacobians(self, strategy: Strategy) -> dict[tuple[str, str], Matrix]:
         """Jacobian of each output by each variable, {(output, variable): matrix}."""
         products = eliminate(self.edges, self.inner, strategy)
-        return {key: products.get(edge) or zeros(*shape) for key, (edge, shape) in self.wanted.items()}
+        return {
+            key: stacked(*[products.get(edge) or zeros(*shape) for edge, shape in parts])
+            for key, parts in self.wanted.items()
+        }
 
 
 def jacobians(
@@ -84,17 +88,22 @@ def linearised(graph: Graph, values: Expressions, *, through_storage: bool = Fal
         for n, chain in zip(node.operands, blocks, strict=True):
             if chain is not None:
                 accumulate(edges, (id(n), id(node)), chain)
-    # an output may feed others too: it ends at a vertex of its own
-    sinks = {name: -k - 1 for k, (name, _) in enumerate(graph.outputs)}
+    # an output may feed others too: it ends at a vertex of its own, a long one at several
+    sinks: dict[str, list[tuple[int, int]]] = {name: [] for name, _ in graph.outputs}
+    ends = 0
     for name, node in graph.outputs:
-        if id(node) in active:
-            edges[id(node), sinks[name]] = _rows(node, graph.chart, values)
+        for part in _parts(node):
+            ends += 1
+            sinks[name].append((-ends, sum(n.manifold.form.dim for n in part)))
+            for n, chain in zip(part, _ends(part, graph.chart, values), strict=True):
+                if id(n) in active:
+                    accumulate(edges, (id(n), -ends), chain)
     # a variable in another chart begins at a vertex of its own, and its column map is one more factor
     sources = {v: v for v in variables}
     for k, (v, p) in enumerate(variables.items()):
         chart = form_chart(p.manifold.form, p.chart)
         if chart is not None and v in active:
-            sources[v] = -k - 1 - len(sinks)
+            sources[v] = -k - 1 - ends
             edges[sources[v], v] = chart.columns(values.scalars[v])
     begun = {v for v, source in sources.items() if v == source}
     inner = tuple(id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun)
@@ -102,11 +111,41 @@ def linearised(graph: Graph, values: Expressions, *, through_storage: bool = Fal
         edges,
         inner,
         {
-            (name, p.name): ((sources[v], sinks[name]), (node.manifold.form.dim, p.manifold.form.dim))
-            for name, node in graph.outputs
+            (name, p.name): tuple(
+                ((sources[v], sink), (rows, p.manifold.form.dim)) for sink, rows in sinks[name]
+            )
+            for name, _ in graph.outputs
             for v, p in variables.items()
         },
     )
+
+
+#: A stack with more rows than that is differentiated in parts, so that the work grows with its length.
+MOST_ROWS = 12
+
+
+def _parts(node: Node) -> list[list[Node]]:
+    """The output itself, or the pieces of a long stack in groups."""
+    if node.operation.name != "stack" or node.manifold.form.dim <= MOST_ROWS:
+        return [[node]]
+    groups: list[list[Node]] = []
+    rows = MOST_ROWS
+    for n in node.operands:
+        if rows + n.manifold.form.dim > MOST_ROWS:
+            groups.append([])
+            rows = 0
+        groups[-1].append(n)
+        rows += n.manifold.form.dim
+    return groups
+
+
+def _ends(part: Sequence[Node], preset: Preset, values: Expressions) -> list[Chain]:
+    """What leads from each piece of a part to the rows of the part."""
+    if len(part) == 1:
+        return [_rows(part[0], preset, values)]
+    sizes = [n.manifold.form.dim for n in part]
+    columns, starts = transpose(eye(sum(sizes))), [sum(sizes[:k]) for k in range(len(sizes))]
+    return [(transpose(columns[s : s + n]),) for s, n in zip(starts, sizes, strict=True)]
 
 
 def _rows(node: Node, preset: Preset, values: Expressions) -> Chain:

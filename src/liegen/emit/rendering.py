@@ -10,6 +10,7 @@ from typing import Any
 from liegen.errors import OutputError
 from liegen.kernel import Kernel
 from liegen.program import Program
+from liegen.program.kinds import kinds
 
 from .header import closing, content, package_header
 from .names import check_names
@@ -18,7 +19,7 @@ from .targets import TARGETS
 from .templates import lay_out
 
 LAYOUTS = ("row", "col")
-#: Says what a manifest is; changes when its fields do.
+#: Says what a manifest is; changes when a reader of an older one would misread it.
 FORMAT = "liegen manifest 1"
 
 
@@ -119,5 +120,6 @@ def _counts(program: Program) -> dict[str, Any]:
     return {
         "operations": program.operations,
         "operations_by_kind": program.op_counts(),
+        "kinds": kinds(program),
         "program_sha256": program.digest(),
     }

@@ -204,17 +204,6 @@ class GroupForm(ManifoldForm):
         """
         return None
 
-    def local_between_blocks(self) -> Rule:
-        """d/dz = -Jl^-1(r), d/dx = -Jr^-1(r) Ad(c^-1), d/dy = Jr^-1(r) with c = x^-1 y."""
-        local, between = self.local_blocks(), self.between_blocks()
-
-        def blocks(r: Coords, z: Coords, x: Coords, y: Coords) -> Blocks:
-            c = self.between(x, y)
-            (by_z, by_c), (c_by_x, _) = local(r, z, c), between(c, x, y)  # type: ignore[misc]
-            return by_z, (*by_c, *c_by_x), by_c
-
-        return blocks
-
     def exp_blocks(self) -> Rule:
         """d/dd = Jr(d)."""
         return lambda _, d: ((self.Jr(d),),)

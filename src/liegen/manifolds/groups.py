@@ -30,9 +30,9 @@ class SO2(Rotation[R2]):
         """The rotation that turns the x axis to the direction of ``v``; not a number at 0."""
 
         def blocks(x: Coords, v: Coords) -> Blocks:
-            k = 1 / length(v)
-            row: Matrix = ((-x[1] * k, x[0] * k),)
-            return ((row,),)
+            # the row first: seen from a body it is the direction's own turned by a right angle
+            row: Matrix = ((-x[1], x[0]),)
+            return ((((1 / length(v),),), row),)
 
         operation = Operation("direction", cls, direction, blocks, "SO2.direction({0})")
         return apply(operation, cls, as_vector(v, 2, "SO2.direction"))

@@ -6,11 +6,12 @@ part and C the derivative of M in the direction of the translation part.
 
 from __future__ import annotations
 
-from liegen.algebra.linear import Chain, Matrix, Vector, dot, matmul, matvec, sub, transpose
+from liegen.algebra.linear import Chain, Matrix, Vector, dot, matvec, sub, transpose
 from liegen.coefficients import stumpff
 
 from . import dual
 from .form import Compute, Coords, PoseForm, Rule
+from .relative import relative_rule
 from .so3_form import SO3Form, series
 
 
@@ -40,18 +41,19 @@ class SE3Form(PoseForm):
         return (*phi, *matvec(transpose(self.rotation.Jr_inv(phi, principal=True)), a[4:]))
 
     def local_between(self) -> tuple[Compute, Rule]:
-        """The translation part is Jl^-1(phi) R_z^T (t_c - t_z), and Jl^-1(phi) R_z^T is Jr^-1(phi) R_c^T.
+        """The translation part is Jr^-1(phi) R_c^T (t_c - t_z): the Jacobian by x needs this rotation matrix.
 
-        The Jacobian by x has that product.
+        To multiply by the product of both matrices, which it needs as well, would save 18 operations more,
+        but everything else waits for that: 5 % slower in C.
         """
 
         def value(z: Coords, x: Coords, y: Coords) -> Vector:
             c = self.between(x, y)
             phi = self.rotation.local(z[:4], c[:4])
-            turned = matmul(self.rotation.Jr_inv(phi, principal=True), transpose(self.rotation.matrix(c[:4])))
-            return (*phi, *matvec(turned, sub(c[4:], z[4:])))
+            d = matvec(transpose(self.rotation.matrix(c[:4])), sub(c[4:], z[4:]))
+            return (*phi, *matvec(self.rotation.Jr_inv(phi, principal=True), d))
 
-        return value, self.local_between_blocks()
+        return value, relative_rule(self)
 
     def adjoint(self, a: Coords) -> Chain:
         """[[R, 0], [[t]x R, R]] as a product (micro Lie, eq. 175)."""

@@ -7,6 +7,7 @@ from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, negate, sca
 from liegen.coefficients import inverse_jacobian, log_factor, stumpff
 
 from .form import Blocks, Compute, Coords, RotationForm, Rule
+from .relative import relative_rule
 
 
 def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:
@@ -79,13 +80,13 @@ class SO3Form(RotationForm):
         return series(d, 0.5, D)
 
     def local_between(self) -> tuple[Compute, Rule]:
-        by_group = self.local_between_blocks()
+        by_group = relative_rule(self)
 
         def value(z: Coords, x: Coords, y: Coords) -> Vector:
             return self.local(z, self.between(x, y))
 
         def blocks(r: Coords, z: Coords, x: Coords, y: Coords) -> Blocks:
-            by_z, _, by_y = by_group(r, z, x, y)  # type: ignore[call-arg]
+            by_z, _, by_y = by_group(r, z, x, y)
             turned: Matrix = tuple(negate(row) for row in self._turned_back(r, z, self.between(x, y)))
             return by_z, (turned,), by_y
 

@@ -10,6 +10,7 @@ import hashlib
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,8 +32,7 @@ ARITY: Mapping[str, int] = {
 FREE = frozenset({"input", "const"})
 
 
-@dataclass(frozen=True, slots=True)
-class Instruction:
+class Instruction(NamedTuple):
     """One operation. ``value`` is a constant's number, or an input's position in the flat list of inputs."""
 
     op: str

@@ -17,24 +17,24 @@ CHANGES = (1e-3, 1e-6)
 
 _REPLACED: dict[str, tuple[tuple[str, Callable[[Instruction], Instruction]], ...]] = {
     "add": (
-        ("sign flipped", lambda i: replace(i, op="sub")),
+        ("sign flipped", lambda i: i._replace(op="sub")),
         ("first term dropped", lambda i: _identity_of(i, 1)),
         ("second term dropped", lambda i: _identity_of(i, 0)),
     ),
     "sub": (
-        ("sign flipped", lambda i: replace(i, op="add")),
-        ("operands swapped", lambda i: replace(i, args=i.args[::-1])),
+        ("sign flipped", lambda i: i._replace(op="add")),
+        ("operands swapped", lambda i: i._replace(args=i.args[::-1])),
         ("second term dropped", lambda i: _identity_of(i, 0)),
     ),
-    "div": (("operands swapped", lambda i: replace(i, args=i.args[::-1])),),
-    "atan2": (("operands swapped", lambda i: replace(i, args=i.args[::-1])),),
+    "div": (("operands swapped", lambda i: i._replace(args=i.args[::-1])),),
+    "atan2": (("operands swapped", lambda i: i._replace(args=i.args[::-1])),),
     "mul": (("first factor dropped", lambda i: _identity_of(i, 1)),),
     "neg": (("sign dropped", lambda i: _identity_of(i, 0)),),
-    "select": (("arms swapped", lambda i: replace(i, args=(i.args[0], i.args[2], i.args[1]))),),
-    "lt": (("operands swapped", lambda i: replace(i, args=i.args[::-1])),),
-    "le": (("operands swapped", lambda i: replace(i, args=i.args[::-1])),),
-    "sin": (("cosine instead", lambda i: replace(i, op="cos")),),
-    "cos": (("sine instead", lambda i: replace(i, op="sin")),),
+    "select": (("arms swapped", lambda i: i._replace(args=(i.args[0], i.args[2], i.args[1]))),),
+    "lt": (("operands swapped", lambda i: i._replace(args=i.args[::-1])),),
+    "le": (("operands swapped", lambda i: i._replace(args=i.args[::-1])),),
+    "sin": (("cosine instead", lambda i: i._replace(op="cos")),),
+    "cos": (("sine instead", lambda i: i._replace(op="sin")),),
 }
 
 
@@ -62,7 +62,7 @@ def _instruction_mutants(program: Program) -> Iterator[Way]:
         if instruction.op == "const":
             for by in CHANGES:
                 value = instruction.value * (1 + by) if instruction.value else by
-                changed = replace(instruction, value=value)
+                changed = instruction._replace(value=value)
                 yield f"t{k} constant {instruction.value!r} changed by {by}", _replacing(program, k, changed)
 
 
@@ -80,7 +80,7 @@ def _resolved(program: Program, code: Sequence[Instruction]) -> Program:
             place.append(args[0])
             continue
         place.append(len(kept))
-        kept.append(replace(instruction, args=args))
+        kept.append(instruction._replace(args=args))
     return rebuilt(program, kept, place)
 
 

@@ -16,14 +16,14 @@ from .divisions import reciprocals
 from .factoring import factor
 from .folding import fold
 from .scheduling import schedule
+from .shared_terms import terms
 from .sign_sharing import signs
 from .subexpressions import cse
-from .terms import terms
 
 Pass = Callable[[Program], Program]
 
 #: Run in turn, again and again until nothing changes.
-PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
+PASSES: tuple[Pass, ...] = (cse, fold, terms, signs, factor, reciprocals)
 #: Run once at the end.
 FINAL: tuple[Pass, ...] = (dead, schedule)
 #: Rounds of ``PASSES`` at most.

@@ -15,6 +15,8 @@ def dead(program: Program) -> Program:
         if live[k]:
             for a in program.code[k].args:
                 live[a] = True
+    if all(live):
+        return program
     place = [0] * len(program.code)
     code: list[Instruction] = []
     for k, ins in enumerate(program.code):

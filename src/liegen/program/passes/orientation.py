@@ -34,6 +34,10 @@ class Kind(IntEnum):
     OUTPUT = 9
 
 
+#: Their sign does not depend on those of their operands.
+_SETTLED = (Kind.LEAF, Kind.EVEN, Kind.SIGNED, Kind.COMPARISON, Kind.LOGIC, Kind.OUTPUT)
+
+
 class Node(NamedTuple):
     """An operation on nodes, ``signs`` times ``args``; ``sign`` is the one in which the program had it."""
 
@@ -157,14 +161,28 @@ class _Search:
     def sweep(self, move: Callable[[int], None], candidates: Sequence[int]) -> bool:
         """Keep each move that lowers the cost, undo the others; return whether one was kept."""
         start = self.cost
+        near = self.behind_payers()
         for k in candidates:
             if self.cost == 0:
                 break
+            if not near[k]:
+                continue
             before = self.cost
             move(k)
             if self.cost >= before:
                 move(k)
+            else:
+                near = self.behind_payers()
         return self.cost < start
+
+    def behind_payers(self) -> bytearray:
+        """The nodes on whose sign a payment depends: a move of another one cannot lower the cost."""
+        near = bytearray(len(self.nodes))
+        for k in range(len(self.nodes) - 1, -1, -1):
+            if self.pays[k] or (near[k] and self.nodes[k].kind not in _SETTLED):
+                for a in self.nodes[k].args:
+                    near[a] = 1
+        return near
 
     def improve(self) -> None:
         """Flip from the outputs to the inputs (the other way round ended higher), then try both signs."""

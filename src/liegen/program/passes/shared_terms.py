@@ -25,8 +25,17 @@ def terms(program: Program) -> Program:
     """
     program = dead(program)
     work = _Work(program)
-    found = signs(work.emitted()) if work.improve() else program
+    if not work.improve():
+        return program
+    found = work.emitted()
+    if found.operations >= program.operations and _settled(found) < _settled(program):
+        found = signs(found)  # only negations are in the way
     return found if found.operations < program.operations else program
+
+
+def _settled(program: Program) -> int:
+    """Operations without negations."""
+    return program.operations - program.op_counts().get("neg", 0)
 
 
 class _Work:
@@ -94,11 +103,9 @@ class _Work:
         pairs = Pairs(groups)
         while found := pairs.best():
             (a, b, relative), holders = found
-            whole = [g for g in holders if len(groups[g]) == 2]
             new = self.add(Node(kind, op, 0.0, (a, b), (1, relative), 1))
             self.uses[new] = len(holders)
             pairs.replace((a, b, relative), holders, new)
-            del whole
 
     def distribute(self, n: int) -> bool:
         """Take the factor that most terms of a sum have out of them."""
@@ -131,59 +138,72 @@ class _Work:
             del own[k]
         return True
 
+    def operands(self, n: int) -> list[Term]:
+        """What a node is made of now."""
+        found = self.sums.get(n) or self.products.get(n)
+        return found or list(zip(self.nodes[n].args, self.nodes[n].signs, strict=True))
+
     def emitted(self) -> Program:
         """The program of the changed nodes."""
-        builder = Builder()
-        index: dict[int, Term] = {}  # node -> its instruction, and the sign in which that has it
-
-        def operands(n: int) -> list[Term]:
-            found = self.sums.get(n) or self.products.get(n)
-            return found or list(zip(self.nodes[n].args, self.nodes[n].signs, strict=True))
-
-        def signed_value(n: int, s: int) -> int:
-            i, t = index[n]
-            node = self.nodes[n]
-            if s == t:
-                return i
-            return builder.const(-node.value) if node.op == "const" else builder.share("neg", (i,))
-
-        def emit(n: int) -> Term:
-            node, own = self.nodes[n], operands(n)
-            if node.kind is Kind.LEAF:
-                return builder.share(node.op, (), node.value), 1
-            if n in self.products:
-                i, s = index[own[0][0]]
-                for m, _ in own[1:]:
-                    j, t = index[m]
-                    i, s = builder.share("mul", (i, j)), s * t
-                return i, s
-            if n in self.sums:
-                return _sum(builder, [(index[m][0], s * index[m][1]) for m, s in own])
-            if node.kind is Kind.SUM:
-                return _sum(builder, [(index[m][0], s * index[m][1]) for m, s in own])
-            return builder.share(node.op, tuple([signed_value(m, s) for m, s in own])), 1
-
+        emission = _Emission(self)
         for root in (*self.conditions, *[n for n, _ in self.results]):
-            stack = [root]
-            while stack:
-                n = stack[-1]
-                missing = [m for m, _ in reversed(operands(n)) if m not in index]
-                if missing and n not in index:
-                    stack += missing
-                else:
-                    stack.pop()
-                    if n not in index:
-                        index[n] = emit(n)
-        flat = iter([signed_value(n, s) for n, s in self.results])
+            emission.reach(root)
+        flat = iter([emission.value(n, s) for n, s in self.results])
+        results = [tuple([next(flat) for _ in own]) for own in self.program.results]
         return replace(
             self.program,
-            code=tuple(builder.code),
-            results=tuple(tuple([next(flat) for _ in own]) for own in self.program.results),
+            code=tuple(emission.builder.code),
+            results=tuple(results),
             requirements=tuple(
-                Requirement(index[c][0], r.message)
+                Requirement(emission.index[c][0], r.message)
                 for c, r in zip(self.conditions, self.program.requirements, strict=True)
             ),
         )
+
+
+class _Emission:
+    """Instructions of the nodes; ``index`` has for a node its instruction and in which sign that has it."""
+
+    def __init__(self, work: _Work) -> None:
+        self.work = work
+        self.builder = Builder()
+        self.index: dict[int, Term] = {}
+
+    def reach(self, root: int) -> None:
+        """Emit a node after everything that it needs."""
+        stack = [root]
+        while stack:
+            n = stack[-1]
+            missing = [m for m, _ in reversed(self.work.operands(n)) if m not in self.index]
+            if missing and n not in self.index:
+                stack += missing
+            else:
+                stack.pop()
+                if n not in self.index:
+                    self.index[n] = self.emit(n)
+
+    def value(self, n: int, s: int) -> int:
+        """The instruction that is s times the node."""
+        i, t = self.index[n]
+        node = self.work.nodes[n]
+        if s == t:
+            return i
+        return self.builder.const(-node.value) if node.op == "const" else self.builder.share("neg", (i,))
+
+    def emit(self, n: int) -> Term:
+        """The node's own operations."""
+        node, own = self.work.nodes[n], self.work.operands(n)
+        if node.kind is Kind.LEAF:
+            return self.builder.share(node.op, (), node.value), 1
+        known = [(self.index[m][0], s * self.index[m][1]) for m, s in own]
+        if node.kind is Kind.SUM:
+            return _sum(self.builder, known)
+        if n in self.work.products:
+            i, sign = known[0]
+            for j, t in known[1:]:
+                i, sign = self.builder.share("mul", (i, j)), sign * t
+            return i, sign
+        return self.builder.share(node.op, tuple([self.value(m, s) for m, s in own])), 1
 
 
 def _sum(builder: Builder, own: list[Term]) -> Term:
