@@ -34,9 +34,14 @@ SYNTAX = Syntax(
     constant=spell("NAN", "INFINITY"),
     truth={True: "LANES_TRUE", False: "LANES_FALSE"},
     lift="lanes_of({0})",
+    sincos="lanes_sincos({0}, &{1}, &{2})",
 )  # fmt: skip
 
-_TYPES = {"scalar": "lanes", "condition": "lanes_mask"}
+_FORMATS = {
+    "scalar": "const lanes {0} = {1};",
+    "condition": "const lanes_mask {0} = {1};",
+    "pair": "lanes {0}; {1};",
+}
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ def _fresh(name: str, used: Collection[str]) -> str:
 
 
 def _assign(assignment: Assignment) -> str:
-    return f"const {_TYPES[assignment.kind]} {assignment.name} = {assignment.text};"
+    return _FORMATS[assignment.kind].format(assignment.name, assignment.text)
 
 
 def _stores(stores: Sequence[Store]) -> list[str]:

@@ -10,6 +10,7 @@ from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
 from .c_batch import batch_name, printed_batch
+from .elementary_text import elementary_text
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .printer import Assignment, Listing, Store, print_program
 from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
@@ -205,4 +206,5 @@ TARGET = Target(
         Sheet("c/batch.h.j2", "c/{package}_batch.h"),
         Sheet("c/lanes.h.j2", "c/{package}_lanes.h"),
     ),
+    package_names={"polynomials": elementary_text()},
 )

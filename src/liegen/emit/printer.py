@@ -25,7 +25,8 @@ WIDTH = 70
 #: As wide as a temporary's name gets in a usual program.
 PLACEHOLDER = Expression("t000")
 
-Kind = Literal["scalar", "condition"]
+#: A pair is two scalars that one statement fills.
+Kind = Literal["scalar", "condition", "pair"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,7 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """A temporary and its value."""
+    """A temporary and its value; for a pair both names, and the statement that fills them."""
 
     name: str
     kind: Kind
@@ -136,10 +137,14 @@ def _leaves(program: Program, syntax: Syntax, scalars: Sequence[str], usage: _Us
 
 
 def _temporaries(
-    program: Program, syntax: Syntax, leaves: Mapping[int, Expression], usage: _Usage
+    program: Program,
+    syntax: Syntax,
+    leaves: Mapping[int, Expression],
+    usage: _Usage,
+    pairs: Mapping[int, tuple[int, int]],
 ) -> set[int]:
-    """The instructions that get a name: read more than once, or too long for the line that reads them."""
-    chosen = {k for k, count in usage.counts.items() if count > 1 and k not in leaves}
+    """The instructions that get a name: read more than once, too long for the line that reads them, paired."""
+    chosen = {k for k, count in usage.counts.items() if (count > 1 and k not in leaves) or k in pairs}
     texts = dict(leaves)
     for k in sorted(usage.counts.keys() - leaves.keys()):
         ins = program.code[k]
@@ -156,6 +161,17 @@ def _temporaries(
     return chosen
 
 
+def _pairs(program: Program, syntax: Syntax, usage: _Usage) -> dict[int, tuple[int, int]]:
+    """(sine, cosine) of one angle, by either of them, where the language has one call for both."""
+    if not syntax.sincos:
+        return {}
+    used = [k for k in usage.counts if k not in usage.constants]
+    sines, cosines = ({program.code[k].args[0]: k for k in used if program.code[k].op == op} for op in ("sin", "cos"))
+    pairs = {(sines[a], cosines[a]) for a in sines.keys() & cosines.keys()}
+    same = [p for p in pairs if (p[0] in usage.guard) == (p[1] in usage.guard)]
+    return {k: pair for pair in same for k in pair}
+
+
 def _loads(program: Program, scalars: Sequence[str], usage: _Usage) -> tuple[Load, ...]:
     owners = [(port.name, n) for port in program.inputs for n in range(port.size)]
     read = {int(program.code[k].value) for k in usage.counts if program.code[k].op == "input"}
@@ -166,17 +182,28 @@ def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> L
     """The statements of a program. ``scalars`` names its inputs, in the order of the flat list of inputs."""
     usage = _usage(program)
     texts = _leaves(program, syntax, scalars, usage)
-    named = _temporaries(program, syntax, texts, usage)
+    pairs = _pairs(program, syntax, usage)
+    named = _temporaries(program, syntax, texts, usage, pairs)
     kinds = _kinds(program)
     guard: list[Assignment] = []
     body: list[Assignment] = []
+    count = 0
     for k in sorted(usage.counts.keys() - texts.keys(), key=lambda k: (k not in usage.guard, k)):
-        ins = program.code[k]
+        ins, block = program.code[k], guard if k in usage.guard else body
+        if k in texts:  # the second of a pair
+            continue
+        if k in pairs:
+            names = f"t{count}", f"t{count + 1}"
+            call = syntax.sincos.format(syntax.result(texts[ins.args[0]]), *names)
+            block.append(Assignment(", ".join(names), "pair", call))
+            texts |= dict(zip(pairs[k], map(Expression, names), strict=True))
+            count += 2
+            continue
         texts[k] = syntax.express(ins.op, [texts[a] for a in ins.args])
         if k in named:
-            name = f"t{len(guard) + len(body)}"
-            (guard if k in usage.guard else body).append(Assignment(name, kinds[k], texts[k].text))
-            texts[k] = Expression(name)
+            block.append(Assignment(f"t{count}", kinds[k], texts[k].text))
+            texts[k] = Expression(f"t{count}")
+            count += 1
     return Listing(
         loads=_loads(program, scalars, usage),
         guard=tuple(guard),

@@ -72,6 +72,7 @@ def _render_target(target: Target, kernels: Sequence[Kernel], options: Options) 
         "content": content(kernels).capitalize(),
         "guard_macro": f"{options.package}_H".upper(),
         "factors": printed,
+        **target.package_names,
     }
     for sheet in target.package_sheets:
         files[sheet.path.format(package=options.package)] = lay_out(sheet.template, shared)

@@ -35,7 +35,8 @@ class Syntax:
     """How a language spells the operations of a program.
 
     ``choice`` is the format of a select where it is no call: ``"{0} ? {1} : {2}"``. ``lift`` is the format of
-    a number where the language takes no plain one: as an argument of a call and as a result.
+    a number where the language takes no plain one: as an argument of a call and as a result. ``sincos`` is the
+    format of a call for both functions of an angle: ``"sincos({0}, &{1}, &{2})"``.
     """
 
     operators: Mapping[str, Operator]
@@ -44,6 +45,7 @@ class Syntax:
     truth: Mapping[bool, str]
     choice: str = ""
     lift: str = ""
+    sincos: str = ""
 
     def express(self, op: str, operands: Sequence[Expression]) -> Expression:
         """The text of one operation."""

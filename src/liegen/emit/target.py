@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from liegen.kernel import Kernel
 
@@ -31,7 +31,8 @@ class Target:
 
     ``public`` lists what the code of a kernel defines for its users, without a prefix that all share.
     ``keywords`` maps a language to its keywords; ``reserved`` are names that the templates use, ``files``
-    names whose file would hide another one. No name of a factor may be one of them.
+    names whose file would hide another one. No name of a factor may be one of them. ``package_names`` are what
+    the package's templates lay out beside the factors.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Target:
     files: frozenset[str]
     factor_sheets: tuple[Sheet, ...]
     package_sheets: tuple[Sheet, ...]
+    package_names: Mapping[str, object] = field(default_factory=dict[str, object])
 
 
 def words(text: str) -> frozenset[str]:

@@ -14,6 +14,8 @@ from liegen.kernel import Kernel
 from liegen.native import compile_shared, find_compiler
 from liegen.program import Program
 
+from .batches import batch_evaluator
+
 Array = NDArray[np.float64]
 Evaluate = Callable[[Mapping[str, Array]], dict[str, Array]]
 #: The output that holds the functions' return values.
@@ -47,12 +49,17 @@ def compile_c(sources: Path, folder: Path) -> tuple[Path | None, str]:
 
 
 def c_backends(kernel: Kernel, library: Path, package: str) -> tuple[tuple[str, bool, Evaluate], ...]:
-    """(name, with Jacobians, evaluate) of its functions."""
+    """(name, with Jacobians, evaluate) of its functions: of one factor, and of a batch."""
     shared = ctypes.CDLL(str(library))
-    value = "C, value", False, _evaluator(shared[f"{package}_{value_name(kernel)}"], kernel, kernel.value)
-    if not kernel.variables:
-        return (value,)
-    return value, ("C", True, _evaluator(shared[f"{package}_{kernel.name}"], kernel, kernel.jacobians))
+    programs = [("value", value_name(kernel), kernel.value)]
+    programs += [("", kernel.name, kernel.jacobians)] if kernel.variables else []
+    found: list[tuple[str, bool, Evaluate]] = []
+    for what, name, program in programs:
+        single = _evaluator(shared[f"{package}_{name}"], kernel, program)
+        batch = batch_evaluator(shared, package, kernel, program, STATUS)
+        for label, evaluate in (("C", single), ("C batch", batch)):
+            found.append((f"{label}, {what}" if what else label, not what, evaluate))
+    return tuple(found)
 
 
 def _evaluator(function: ctypes._NamedFuncPointer, kernel: Kernel, program: Program) -> Evaluate:  # pyright: ignore[reportPrivateUsage]
