@@ -1,8 +1,8 @@
-"""Solve a pose graph with generated factors: `python docs/examples/pose_graph.py [FILE.g2o]`.
+"""Solve a pose graph with compiled factors: `python docs/examples/pose_graph.py [FILE.g2o]`.
 
 A pose graph has unknown poses x_1 ... x_N in a world frame, and edges: each is a measurement z of pose j in
-the frame of pose i. Its residual is the library's between factor, r = Log(z^-1 x_i^-1 x_j), generated as
-`liegen_factors.between_se3` (2D: `between_se2`). The best poses minimise
+the frame of pose i. Its residual is the library's between factor, r = Log(z^-1 x_i^-1 x_j), whitened by the
+noise of the edge: `between_se3.whitened(noise="full")` (2D: `between_se2`). The best poses minimise
 
     error = 1/2 sum |S r|^2,    S^T S = information matrix of the edge.
 
@@ -10,15 +10,16 @@ Edges alone leave the whole graph free to move, so a prior factor of 1 mm and 1 
 
 What a solver of your own takes from here is short:
 
-1. `linearise`: ONE call of the generated function gives the residuals and Jacobians of all edges;
-   `res_D_x` is a k x k block in the columns of pose i, `res_D_y` one in the columns of pose j.
+1. `linearise`: ONE call of the compiled factor gives the whitened residuals and Jacobians of all edges. It
+   reads the poses through the edge list, and writes `res_D_x`, a k x k block in the columns of pose i, and
+   `res_D_y`, one in the columns of pose j, to where the sparse matrix has them.
 2. `retract`: the Jacobians are those of x Exp(d), so that is how a step d is applied (3D: rotation first).
 
 Without a file it makes a sphere: a robot winds up around it, with noisy odometry, and measures where it is
 relative to the ring below.
 
-Needs NumPy, SciPy and the generated package `liegen_factors`; click for the command line and matplotlib for
-the picture (`pip install liegen[examples]`).
+Needs SciPy, and matplotlib for the picture (`pip install liegen[examples]`). Where there is no C compiler the
+factors run as NumPy code.
 """
 
 from __future__ import annotations
@@ -29,11 +30,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
-import liegen_factors as factors
 import numpy as np
 from g2o import Floats, G2oError, Graph, read_g2o
 from scipy.sparse import bsr_array, csc_array, dia_array
 from scipy.sparse.linalg import splu
+
+import liegen
+from liegen import library
 
 PRIOR_SIGMA = 1e-3  # metres and radians
 SPHERE_SIGMA = np.array([0.03, 0.03, 0.03, 0.1, 0.1, 0.1])  # radians, metres
@@ -94,13 +97,13 @@ class Group:
     dim: int  # of the tangent space
     space: int  # of a position, the last numbers of a pose
     retract: Callable[[Floats, Floats], Floats]
-    between_jacobians: Callable[..., tuple[Floats, Floats, Floats]]  # res, res_D_x, res_D_y
-    prior_jacobians: Callable[..., tuple[Floats, Floats]]  # res, res_D_x
+    between: liegen.Function  # of x and y, given z
+    prior: liegen.Function  # of x, given z
 
 
 GROUPS = {
-    "SE2": Group(3, 2, retract_se2, factors.between_se2_jacobians, factors.prior_se2_jacobians),
-    "SE3": Group(6, 3, retract_se3, factors.between_se3_jacobians, factors.prior_se3_jacobians),
+    "SE2": Group(3, 2, retract_se2, library.between_se2, library.prior_se2),
+    "SE3": Group(6, 3, retract_se3, library.between_se3, library.prior_se3),
 }
 
 
@@ -111,20 +114,23 @@ def linearise(graph: Graph) -> Callable[[Floats], tuple[bsr_array, Floats]]:
     """The function poses -> (J, r) of all edges and priors, whitened. What never changes is prepared once."""
     group = GROUPS[graph.group]
     k, n_edges, n_held = group.dim, len(graph.i), len(graph.held)
+    edges = liegen.compile(group.between.whitened(noise="full")).indexed(x=graph.i, y=graph.j)
+    priors = liegen.compile(group.prior.whitened(noise="isotropic")).indexed(x=graph.held)
     whiten = np.linalg.cholesky(graph.information).transpose(0, 2, 1)  # L^T: information = L L^T
-    priors = graph.poses[graph.held]
+    held_at = graph.poses[graph.held]
     # J in k x k blocks: the row of an edge has two, in columns i and j, the row of a prior has one.
     columns = np.concatenate([np.stack([graph.i, graph.j], axis=1).ravel(), graph.held])
     row_starts = np.concatenate([np.arange(0, 2 * n_edges, 2), 2 * n_edges + np.arange(n_held + 1)])
     shape = (k * (n_edges + n_held), k * len(graph.poses))
 
     def at(poses: Floats) -> tuple[bsr_array, Floats]:
-        r, D_i, D_j = group.between_jacobians(poses[graph.i], poses[graph.j], z=graph.measurements)
-        p, D_p = group.prior_jacobians(poses[graph.held], z=priors)
-        edge_blocks = np.stack([whiten @ D_i, whiten @ D_j], axis=1).reshape(-1, k, k)
-        blocks = np.concatenate([edge_blocks, D_p / PRIOR_SIGMA])
-        residual = np.concatenate([(whiten @ r[..., None]).ravel(), p.ravel() / PRIOR_SIGMA])
-        return bsr_array((blocks, columns, row_starts), shape=shape), residual
+        blocks, r = np.empty((len(columns), k, k)), np.empty((n_edges + n_held, k))
+        D = blocks[: 2 * n_edges].reshape(n_edges, 2, k, k)
+        out = (r[:n_edges], D[:, 0], D[:, 1])
+        edges.jacobians(poses, poses, z=graph.measurements, sqrt_info=whiten, out=out)
+        out = (r[n_edges:], blocks[2 * n_edges :])
+        priors.jacobians(poses, z=held_at, sqrt_info=[1 / PRIOR_SIGMA], out=out)
+        return bsr_array((blocks, columns, row_starts), shape=shape), r.ravel()
 
     return at
 

@@ -3,6 +3,7 @@
 import os
 import sys
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from scipy.linalg import expm
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
+
+import liegen
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "examples"))
@@ -232,6 +235,15 @@ def test_refused_steps_from_a_bad_start_lead_to_the_same_optimum():
     assert any(h.decrease < 0 for h in history)
     assert all(b.error <= a.error for a, b in pairwise(history))
     assert history[-1].error == pytest.approx(solve(graph)[-1].error, rel=1e-9)
+
+
+def test_linearising_is_the_same_without_a_compiler(monkeypatch):
+    graph = pose_graph.made_sphere(rings=3, per_ring=5)
+    compiled_jacobian, compiled_residual = pose_graph.linearise(graph)(graph.poses)
+    monkeypatch.setattr(pose_graph.liegen, "compile", partial(liegen.compile, backend="numpy"))
+    jacobian, residual = pose_graph.linearise(graph)(graph.poses)
+    np.testing.assert_allclose(residual, compiled_residual, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(jacobian.toarray(), compiled_jacobian.toarray(), rtol=1e-9, atol=1e-9)
 
 
 def test_a_measurement_that_is_not_a_number_is_an_error():

@@ -16,8 +16,8 @@ from liegen.native import compile_shared, compiler_version, find_compiler, proce
 from .cache import SUFFIX, Refused, cache_folder, find, install, opened, private_folder
 from .source import Source
 
-#: No libm call sets errno, no unused arm of a select traps.
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=fast", "-fno-math-errno", "-fno-trapping-math")
+#: a * b + c may be rounded once; no call of libm sets errno, no unused arm of a select traps.
+FLAGS = ("-std=c99", "-O3", "-ffp-contract=fast", "-fno-math-errno", "-fno-trapping-math")
 #: For this machine's processor; left out where a compiler does not know it.
 NATIVE = ("-march=native",)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -176,6 +177,8 @@ def _regular(array: Array, core: tuple[int, ...]) -> bool:
 def steps(array: Array, core: tuple[int, ...]) -> tuple[int, int]:
     """Items between elements, and between the numbers of an element; (0, 0) where no such steps exist."""
     size, count = array.itemsize, len(core)
+    if array.flags.c_contiguous:
+        return math.prod(core), 1
     strides = array.strides[array.ndim - count :]
     if any(step % size for step in array.strides):
         return 0, 0

@@ -94,6 +94,8 @@ def _components(array: Array, port: Port) -> list[Array]:
 
 def number(values: Sequence[Array]) -> np.dtype[Any]:
     """The type of the results: the first that all arguments can be cast to safely, as in a gufunc."""
+    if all(v.dtype == np.float64 for v in values):
+        return np.dtype(np.float64)
     types = [np.dtype(n.dtype) for n in NUMBERS]
     fits = (t for t in types if all(np.can_cast(v.dtype, t) for v in values))
     return next(fits, types[-1])

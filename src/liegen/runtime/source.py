@@ -66,6 +66,7 @@ def emitted(kernel: Kernel) -> Source:
     options = Options(PACKAGE, f"liegen.compile({kernel.name})")
     files = render([kernel], ("c", "numpy"), package=PACKAGE, regenerate=options.regenerate)
     c = {path.removeprefix("c/"): text for path, text in files.items() if path.startswith("c/")}
+    del c[f"{kernel.name}.c"]  # the functions of a single element, which no loop calls
     several = len(kernel.outputs) > 1
     return Source(
         name=kernel.name,
