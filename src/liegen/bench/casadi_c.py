@@ -15,6 +15,8 @@ from liegen.manifolds import Operation
 from .variant import AnyFunction, Task, Variant, fastest, offsets
 
 NAME = "CasADi"
+#: The expressions of liegen: CasADi prints them.
+RULES = "liegen's rules"
 Blocks = Mapping[tuple[str, str], Matrix]
 
 
@@ -32,7 +34,7 @@ def variants(task: Task) -> tuple[Variant, ...]:
         return jacobians(function.graph, values, STRATEGIES["reverse"])
 
     return (
-        _variant(task, "casadi_rules", "liegen's rules", values, ruled),
+        _variant(task, "casadi_rules", RULES, values, ruled),
         _variant(
             task,
             "casadi_storage",
@@ -76,7 +78,10 @@ def _variant(task: Task, name: str, note: str, values: Expressions, derive: Call
     )
     prototype = f"int {name}(const double **, double **, long long int *, double *, int);"
     counts = lowered(graph, values, blocks).op_counts()
-    return Variant(NAME, ca.__version__, note, prototype, call, {f"{name}.c": text}, counts, seconds)
+    return Variant(
+        NAME, ca.__version__, note, prototype, call, {f"{name}.c": text}, counts, seconds,
+        borrowed=note == RULES,
+    )  # fmt: skip
 
 
 def _generated(task: Task, name: str, values: Expressions, blocks: Blocks) -> str:

@@ -16,6 +16,8 @@ from .variant import Task, offsets
 
 #: Matrices by output name, as lists of rows; a vector is one column.
 Rows = Mapping[str, Sequence[Sequence[Any]]]
+#: The formulation that is liegen's own.
+FORMS = "liegen's closed forms"
 #: Calls are through plain pointers, which Eigen's types must take at any address.
 EIGEN_OPTIONS = ("-I/usr/include/eigen3", "-DEIGEN_MAX_STATIC_ALIGN_BYTES=0", "-DNDEBUG")
 

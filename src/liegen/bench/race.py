@@ -6,7 +6,7 @@ import statistics
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from . import draws
@@ -17,6 +17,8 @@ from .variant import FLAGS, AbsentError, Maker, Missing, Task, Variant
 
 #: Variants whose results differ more from the reference, relative to max(1, largest entry), are not timed.
 AGREEMENT = 1e-9
+#: Rounds after which the fastest variant of a peer is chosen for further flags.
+TRIAL = 10
 
 
 @dataclass(frozen=True)
@@ -88,20 +90,52 @@ def _median(entry: Entry) -> float:
 
 
 def race(task: Task, makers: Mapping[str, Maker], plan: Plan) -> Result:
-    """Time every variant of a task with all flags; the first maker's first variant is the base.
+    """Time the variants of a task in turn; the first maker's first variant is the base.
 
-    A peer that is not installed, or whose code does not compile, is missing from the table, with the reason.
+    All are timed with the first flags, and of every peer the fastest of its own with the other flags too. A
+    peer that is not installed, or whose code does not compile, is missing, with the reason.
     """
     made, missing = generated(task, makers)
     drawn = {kind: draws.samples(task.function, kind, plan.calls, plan.seed) for kind in draws.SETS}
     inputs = {kind: draws.rows(samples) for kind, samples in drawn.items()}
     references = {kind: Errors.of(task, samples[: plan.references]) for kind, samples in drawn.items()}
+    first, *others = plan.flags
     with tempfile.TemporaryDirectory() as folder:
-        loaded, refused = _loaded(task, made, plan, Path(folder))
-        found = [{kind: errors(one, references[kind]) for kind in draws.SETS} for _, one in loaded]
-        sound = [k for k, error in enumerate(found) if error[draws.RANDOM] <= AGREEMENT]
-        times = {kind: _times([loaded[k][1] for k in sound], inputs[kind], plan) for kind in draws.SETS}
-    entries = tuple(
+        loaded, refused = _loaded(task, [(first, v) for v in made], plan, Path(folder, first))
+        if others:
+            best = _fastest(loaded, inputs[draws.RANDOM], plan)
+            again = [(flags, v) for v in made if v in best for flags in others]
+            more, also = _loaded(task, again, plan, Path(folder, "more"))
+            loaded, refused = [*loaded, *more], [*refused, *also]
+        loaded.sort(key=lambda pair: made.index(pair[1].variant))
+        entries = _entries(loaded, inputs, references, plan)
+    return Result(task.name, entries, (*missing, *refused))
+
+
+def _fastest(loaded: Sequence[tuple[str, Loaded]], inputs: Array, plan: Plan) -> list[Variant]:
+    """The fastest of every peer's own variants, in a few rounds."""
+    times = _times([one for _, one in loaded], inputs, replace(plan, rounds=min(plan.rounds, TRIAL)))
+    found: dict[str, tuple[float, Variant]] = {}
+    for (_, one), t in zip(loaded, times, strict=True):
+        if one.variant.borrowed:
+            continue
+        key = one.variant.peer if one.variant.rows == 1 else one.variant.label
+        if key not in found or t.minimum_ns < found[key][0]:
+            found[key] = t.minimum_ns, one.variant
+    return [variant for _, variant in found.values()]
+
+
+def _entries(
+    loaded: Sequence[tuple[str, Loaded]],
+    inputs: Mapping[str, Array],
+    references: Mapping[str, Errors],
+    plan: Plan,
+) -> tuple[Entry, ...]:
+    """Errors of all, and times of those that agree with the reference."""
+    found = [{kind: errors(one, references[kind]) for kind in draws.SETS} for _, one in loaded]
+    sound = [k for k, error in enumerate(found) if error[draws.RANDOM] <= AGREEMENT]
+    times = {kind: _times([loaded[k][1] for k in sound], inputs[kind], plan) for kind in draws.SETS}
+    return tuple(
         Entry(
             one.variant,
             flags,
@@ -110,7 +144,6 @@ def race(task: Task, makers: Mapping[str, Maker], plan: Plan) -> Result:
         )
         for k, (flags, one) in enumerate(loaded)
     )
-    return Result(task.name, entries, (*missing, *refused))
 
 
 def generated(task: Task, makers: Mapping[str, Maker]) -> tuple[list[Variant], list[Missing]]:
@@ -130,10 +163,8 @@ def generated(task: Task, makers: Mapping[str, Maker]) -> tuple[list[Variant], l
 
 
 def _loaded(
-    task: Task, made: Sequence[Variant], plan: Plan, folder: Path
+    task: Task, wanted: Sequence[tuple[str, Variant]], plan: Plan, folder: Path
 ) -> tuple[list[tuple[str, Loaded]], list[Missing]]:
-    wanted = [(flags, variant) for variant in made for flags in plan.flags]
-
     def attempt(job: tuple[int, tuple[str, Variant]]) -> Loaded | Missing:
         number, (flags, variant) = job
         try:

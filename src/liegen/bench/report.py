@@ -22,8 +22,6 @@ TITLES = (
 )  # fmt: skip
 #: Kinds that are calls of the mathematics library, by any generator's name; the rest are instructions.
 CALLS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "call")
-#: Closed forms of liegen inside a peer are no formulation of that peer.
-BORROWED = ("liegen's closed forms", "liegen's rules")
 #: A variant is faster where its median ratio is below 1 by more than this: less is noise.
 NOISE = 0.03
 
@@ -62,11 +60,7 @@ def _row(function: str, entry: Entry) -> tuple[str, ...]:
 
 def peers_of(result: Result) -> list[Entry]:
     """The best entries of peers' own formulations that are right."""
-    return [
-        e
-        for e in result.best
-        if e.agrees and e.variant.peer != ours.NAME and not e.variant.note.startswith(BORROWED)
-    ]
+    return [e for e in result.best if e.agrees and e.variant.peer != ours.NAME and not e.variant.borrowed]
 
 
 def wrong_ones(result: Result) -> list[Entry]:
@@ -96,7 +90,7 @@ def verdict(result: Result) -> str:
     borrowed = [
         e.variant.label
         for e in result.best
-        if e.agrees and e.variant.note.startswith(BORROWED)
+        if e.agrees and e.variant.borrowed
         and e.times[RANDOM].ratio < own[0].times[RANDOM].ratio * (1 - NOISE)
     ]  # fmt: skip
     lost = f"; LOSS of code generation to {', '.join(borrowed)}" if borrowed else ""

@@ -14,7 +14,7 @@ from liegen.algebra import Algebra
 from liegen.manifolds import ManifoldForm
 
 from .operations import counted
-from .programs import EIGEN_OPTIONS, Rows, closed_forms, eigen_wrapper, prototype
+from .programs import EIGEN_OPTIONS, FORMS, Rows, closed_forms, eigen_wrapper, prototype
 from .symforce_formulas import FORMULAS
 from .variant import AbsentError, Task, Variant, fastest
 
@@ -37,7 +37,7 @@ def _module(name: str) -> Any:
 def variants(task: Task) -> tuple[Variant, ...]:
     """Its own formulation by both of its differentiations, and liegen's closed forms."""
     sf = _module("symbolic")
-    forms = _variant(task, sf, "liegen's closed forms", lambda given: _closed(task, sf, given))
+    forms = _variant(task, sf, FORMS, lambda given: _closed(task, sf, given))
     if not (task.published and task.name in FORMULAS):
         return (forms,)
     own = [
@@ -56,6 +56,7 @@ def _variant(task: Task, sf: Any, note: str, outputs: Outputs) -> Variant:
     return Variant(
         NAME, importlib.metadata.version("symforce"), note, prototype(SYMBOL), (f"{SYMBOL}(a, b);",),
         {"generated.h": text, **files}, counted(text), seconds, column_major=True, options=EIGEN_OPTIONS,
+        borrowed=note == FORMS,
     )  # fmt: skip
 
 

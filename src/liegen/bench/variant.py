@@ -37,6 +37,7 @@ class Variant:
     ``operations`` are those of the program by kind, as its generator knows or writes them; ``seconds`` is the
     time that it took to generate, after import. Both are None where nothing is generated. ``driver`` is the
     template of its loop over inputs, which writes ``rows`` rows of outputs before it begins again.
+    ``borrowed``: liegen's mathematics inside this peer, no formulation of its own.
     """
 
     peer: str
@@ -51,6 +52,7 @@ class Variant:
     options: tuple[str, ...] = ()
     driver: str = "bench/driver.c.j2"
     rows: int = 1
+    borrowed: bool = False
 
     @property
     def label(self) -> str:

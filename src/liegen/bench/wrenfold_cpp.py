@@ -11,7 +11,7 @@ from typing import Any
 from liegen.algebra import Algebra
 from liegen.manifolds import ManifoldForm
 
-from .programs import EIGEN_OPTIONS, Rows, closed_forms, eigen_wrapper, prototype
+from .programs import EIGEN_OPTIONS, FORMS, Rows, closed_forms, eigen_wrapper, prototype
 from .variant import AbsentError, Task, Variant, fastest
 from .wrenfold_formulas import FORMULAS
 
@@ -32,7 +32,7 @@ def _module(name: str) -> Any:
 def variants(task: Task) -> tuple[Variant, ...]:
     """Its own formulation by the chain rule and by first-order retraction, and liegen's closed forms."""
     sym = _module("sym")
-    forms = _variant(task, sym, "liegen's closed forms", lambda s, given: _closed(task, s, given))
+    forms = _variant(task, sym, FORMS, lambda s, given: _closed(task, s, given))
     if not (task.published and task.name in FORMULAS):
         return (forms,)
     formula = FORMULAS[task.name]
@@ -55,6 +55,7 @@ def _variant(task: Task, sym: Any, note: str, outputs: Outputs) -> Variant:
     return Variant(
         NAME, version, detail, prototype(SYMBOL), call, {"generated.h": text, **files},
         operations(text), seconds, column_major=True, options=EIGEN_OPTIONS,
+        borrowed=note == FORMS,
     )  # fmt: skip
 
 
