@@ -2,65 +2,24 @@
 
 from __future__ import annotations
 
-import ctypes
 import statistics
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
-
-Run = Callable[[], None]
+from collections.abc import Callable, Sequence
 
 
-@dataclass(frozen=True)
-class Row:
-    """A variant's nanoseconds a call, and its median ratio to the first variant, round by round."""
-
-    name: str
-    minimum_ns: float
-    median_ns: float
-    ratio: float
-    operations: int | None
-    error: float
+def median_ratio(times: Sequence[float], base: Sequence[float]) -> float:
+    """The median over the rounds of one variant's time by that of another in the same round."""
+    return statistics.median(a / b for a, b in zip(times, base, strict=True))
 
 
-def in_turn(variants: Mapping[str, Run], calls: int, rounds: int) -> dict[str, list[float]]:
-    """Nanoseconds a call of each variant in each round; every round runs all of them."""
-    for run in variants.values():
+def in_turn(runs: Sequence[Callable[[], object]], calls: int, rounds: int) -> list[list[float]]:
+    """Nanoseconds a call of each in each round; every round runs all of them, after one warm-up."""
+    for run in runs:
         run()
-    seconds: dict[str, list[float]] = {name: [] for name in variants}
+    found: list[list[float]] = [[] for _ in runs]
     for _ in range(rounds):
-        for name, run in variants.items():
+        for run, times in zip(runs, found, strict=True):
             start = time.perf_counter_ns()
             run()
-            seconds[name].append((time.perf_counter_ns() - start) / calls)
-    return seconds
-
-
-def summarise(
-    times: Mapping[str, Sequence[float]], operations: Mapping[str, int | None], errors: Mapping[str, float]
-) -> tuple[Row, ...]:
-    """One row a variant; the first is the base of the ratios."""
-    base = next(iter(times.values()))
-    return tuple(
-        Row(
-            name,
-            min(ns),
-            statistics.median(ns),
-            statistics.median(a / b for a, b in zip(ns, base, strict=True)),
-            operations[name],
-            errors[name],
-        )
-        for name, ns in times.items()
-    )
-
-
-def driver(library: ctypes.CDLL, name: str, inputs: NDArray[np.float64], outputs: NDArray[np.float64]) -> Run:
-    """Call ``drive_<name>`` over all inputs, each call into the same output buffer."""
-    function = library[f"drive_{name}"]
-    function.argtypes = [ctypes.c_ssize_t, ctypes.c_void_p, ctypes.c_void_p]
-    function.restype = None
-    n, source, target = len(inputs), inputs.ctypes.data, outputs.ctypes.data
-    return lambda: function(n, source, target)
+            times.append((time.perf_counter_ns() - start) / calls)
+    return found

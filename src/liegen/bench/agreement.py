@@ -1,0 +1,55 @@
+"""Whether a variant is right: its outputs against the 50-digit reference of ``liegen verify``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from liegen.verify.draws import Sample
+from liegen.verify.expected import Block, expect
+
+from .build import Array, Loaded
+from .draws import rows
+from .variant import Task
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Inputs and what the reference says of them, in the order of the variants' outputs."""
+
+    inputs: Array
+    blocks: tuple[Block, ...]
+
+    @classmethod
+    def of(cls, task: Task, samples: Sequence[Sample]) -> Errors:
+        """Evaluate the reference at some samples."""
+        blocks = {block.name: block for block in expect(task.function, samples, conditioned=False).blocks}
+        return cls(rows(tuple(samples)), tuple(blocks[port.name] for port in task.outputs))
+
+
+def errors(loaded: Loaded, reference: Errors) -> float:
+    """Largest error of an entry, relative to the largest entry of its output (at least 1).
+
+    NaN counts as infinite. Quaternions of either sign are right.
+    """
+    found = loaded.results(reference.inputs)
+    worst, start = 0.0, 0
+    for block in reference.blocks:
+        size = block.expected.shape[2]
+        worst = max(worst, _error(block, found[:, start : start + size]))
+        start += size
+    return worst
+
+
+def _error(block: Block, found: Array) -> float:
+    gaps = np.abs(found - block.expected)
+    for start in block.quaternions:
+        q = slice(start, start + 4)
+        gaps[..., q] = np.minimum(gaps[..., q].max(-1), np.abs(found[:, q] + block.expected[..., q]).max(-1))[
+            ..., None
+        ]
+    scale = np.maximum(1.0, np.abs(block.expected).max(axis=(0, 2)))
+    worst = float((gaps.max(axis=2).min(axis=0) / scale)[block.kept].max(initial=0.0))
+    return worst if np.isfinite(worst) else float("inf")

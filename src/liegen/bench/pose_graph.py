@@ -1,0 +1,225 @@
+"""A whole pose graph of SE(3) from Python, whitened: GTSAM's ``linearize`` and solver, and liegen's."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import math
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from liegen.errors import SourceError
+from liegen.library import between_se3
+from liegen.manifolds import SE3
+from liegen.modules import group_functions
+from liegen.runtime import compile as compiled
+
+from .timing import in_turn, median_ratio
+from .variant import AbsentError
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int32]
+#: Both sides must give the same whitened residuals and Jacobians, relative to the largest entry.
+AGREEMENT = 1e-9
+#: Gauss-Newton stops where an iteration lowers the error by less than this share (GTSAM's default).
+TOLERANCE = 1e-5
+MAX_ITERATIONS = 50
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """A graph: poses (N, 7), pairs (n,), measurements (n, 7), square roots of information (n, 6, 6)."""
+
+    poses: Array
+    i: Indices
+    j: Indices
+    z: Array
+    sqrt_info: Array
+
+
+@dataclass(frozen=True)
+class Row:
+    """Nanoseconds an edge of one way to linearise, and how many times as fast as GTSAM (median of rounds)."""
+
+    what: str
+    minimum_ns: float
+    median_ns: float
+    faster: float
+
+
+@dataclass(frozen=True)
+class Solve:
+    """A whole solve: seconds, those in linear systems where known, iterations, final error 1/2 |r|^2."""
+
+    what: str
+    seconds: float
+    systems: float | None
+    iterations: int
+    error: float
+
+
+@dataclass(frozen=True)
+class GraphReport:
+    """What was measured on a file; ``difference`` is that of both linearisations.
+
+    ``threads`` are those that GTSAM's linearisation used, from processor time over wall time.
+    """
+
+    edges: int
+    poses: int
+    gtsam: str
+    threads: int
+    difference: float
+    rows: tuple[Row, ...]
+    solves: tuple[Solve, ...]
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both sides computed the same."""
+        return self.difference <= AGREEMENT
+
+
+def _gtsam() -> Any:
+    try:
+        return importlib.import_module("gtsam")
+    except ImportError as error:
+        raise AbsentError(f"GTSAM is not installed ({error})") from None
+
+
+def read(path: Path) -> tuple[Any, Any, Edges]:
+    """GTSAM's graph and values of a g2o file of SE(3), and the same as arrays.
+
+    Raises AbsentError without GTSAM, SourceError for a file without such edges.
+    """
+    gtsam = _gtsam()
+    if not path.is_file():
+        raise SourceError(f"{path} is no file; give a pose graph in g2o format")
+    graph, values = gtsam.readG2o(str(path), True)
+    if not graph.size():
+        raise SourceError(f"{path} has no edge between poses of SE(3)")
+    keys = list(values.keys())
+    place = {key: k for k, key in enumerate(keys)}
+    factors = [graph.at(k) for k in range(graph.size())]
+    pairs = np.array([[place[key] for key in list(f.keys())] for f in factors], dtype=np.int32)
+    poses = np.array([_stored(values.atPose3(key)) for key in keys])
+    z = np.array([_stored(f.measured()) for f in factors])
+    roots = np.array([f.noiseModel().R() for f in factors])
+    edges = Edges(poses, pairs[:, 0].copy(), pairs[:, 1].copy(), z, roots)
+    return graph, values, edges
+
+
+def _stored(pose: Any) -> list[float]:
+    q = pose.rotation().toQuaternion()
+    return [q.x(), q.y(), q.z(), q.w(), *pose.translation()]
+
+
+def linearised(edges: Edges) -> Callable[..., Any]:
+    """The call that linearises all edges at poses: whitened residuals (n, 6), Jacobians (n, 6, 6) twice."""
+    kernel = compiled(between_se3.whitened("full")).indexed(x=edges.i, y=edges.j)
+
+    def at(poses: Array, out: Any = None) -> Any:
+        return kernel.jacobians(poses, poses, z=edges.z, sqrt_info=edges.sqrt_info, out=out)
+
+    return at
+
+
+def compare_graph(path: Path, *, rounds: int, solve: bool = True) -> GraphReport:
+    """Linearise all edges in turn with GTSAM and with liegen, check that both agree, then solve with both."""
+    graph, values, edges = read(path)
+    ours = linearised(edges)
+    kept = ours(edges.poses)
+    runs: dict[str, Callable[[], Any]] = {
+        "GTSAM: graph.linearize": lambda: graph.linearize(values),
+        "liegen: one call": lambda: ours(edges.poses),
+        "liegen: one call into given arrays": lambda: ours(edges.poses, out=tuple(kept)),
+    }
+    times = in_turn(list(runs.values()), len(edges.i), rounds)
+    rows = tuple(
+        Row(
+            what,
+            min(ns),
+            statistics.median(ns),
+            median_ratio(times[0], ns),
+        )
+        for what, ns in zip(runs, times, strict=True)
+    )
+    return GraphReport(
+        edges=len(edges.i),
+        poses=len(edges.poses),
+        gtsam=importlib.metadata.version("gtsam"),
+        threads=_threads(runs["GTSAM: graph.linearize"], rounds),
+        difference=_difference(graph.linearize(values), ours(edges.poses)),
+        rows=rows,
+        solves=(_solved_by_gtsam(graph, values), solved(edges)) if solve else (),
+    )
+
+
+def _threads(run: Callable[[], Any], rounds: int) -> int:
+    """At least so many threads worked; on a busy machine they may have been more."""
+    wall, used = time.perf_counter(), time.process_time()
+    for _ in range(rounds):
+        run()
+    return max(1, math.ceil((time.process_time() - used) / (time.perf_counter() - wall) - 0.1))
+
+
+def _difference(linear: Any, ours: Sequence[Array]) -> float:
+    """Largest difference of whitened residuals and Jacobians, relative to the largest entry."""
+    res, D_x, D_y = ours
+    both = np.concatenate([D_x, D_y, -res[..., None]], axis=2)
+    theirs = np.array([np.column_stack(linear.at(k).jacobian()) for k in range(len(res))])
+    return float(np.abs(both - theirs).max() / np.abs(theirs).max())
+
+
+def _solved_by_gtsam(graph: Any, values: Any) -> Solve:
+    gtsam = _gtsam()
+    parameters = gtsam.GaussNewtonParams()
+    parameters.setRelativeErrorTol(TOLERANCE)
+    parameters.setMaxIterations(MAX_ITERATIONS)
+    start = time.perf_counter()
+    held = graph.clone() if hasattr(graph, "clone") else gtsam.NonlinearFactorGraph(graph)
+    first = values.keys()[0]
+    held.add(gtsam.PriorFactorPose3(first, values.atPose3(first), gtsam.noiseModel.Isotropic.Sigma(6, 1e-3)))
+    optimizer = gtsam.GaussNewtonOptimizer(held, values, parameters)
+    result = optimizer.optimize()
+    seconds = time.perf_counter() - start
+    return Solve("GTSAM: Gauss-Newton", seconds, None, optimizer.iterations(), graph.error(result))
+
+
+def solved(edges: Edges) -> Solve:
+    """Gauss-Newton with liegen's blocks and SciPy's sparse LU; the first pose stays where it is."""
+    sparse: Any = importlib.import_module("scipy.sparse")
+    linalg: Any = importlib.import_module("scipy.sparse.linalg")
+
+    start = time.perf_counter()
+    at, poses = linearised(edges), edges.poses
+    retract = compiled(next(f for f in group_functions(SE3) if f.name == "se3_retract"))
+    n, count = len(edges.i), len(poses)
+    columns = np.stack([edges.i, edges.j], axis=1).ravel()
+    starts = np.arange(0, 2 * n + 1, 2)
+    iterations, error, systems = 0, float("inf"), 0.0
+    while iterations < MAX_ITERATIONS:
+        res, D_x, D_y = at(poses)
+        now = 0.5 * float((res * res).sum())
+        if error - now < TOLERANCE * error and iterations:
+            break
+        error = now
+        blocks = np.stack([D_x, D_y], axis=1).reshape(-1, 6, 6)
+        began = time.perf_counter()
+        J: Any = sparse.bsr_array((blocks, columns, starts), shape=(6 * n, 6 * count)).tocsr()[:, 6:]
+        H: Any = (J.T @ J).tocsc()
+        factored: Any = linalg.splu(
+            H, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+        step = factored.solve(-(J.T @ res.ravel()))
+        systems += time.perf_counter() - began
+        poses = np.concatenate([poses[:1], retract(poses[1:], step.reshape(-1, 6))])
+        iterations += 1
+    seconds = time.perf_counter() - start
+    return Solve("liegen and SciPy: Gauss-Newton", seconds, systems, iterations, error)

@@ -1,0 +1,70 @@
+"""A pose graph from Python: both sides linearise the same."""
+
+import numpy as np
+import pytest
+
+from liegen import SE3
+from liegen.bench.pose_graph import AGREEMENT, Edges, compare_graph, read, solved
+from liegen.bench.python_batches import compare_batches
+from liegen.native import find_compiler
+
+pytestmark = pytest.mark.skipif(not find_compiler(), reason="no C compiler")
+
+
+def square(noise: float) -> tuple[np.ndarray, Edges]:
+    """True poses, and a graph of five edges that starts near them."""
+    pytest.importorskip("scipy")
+    generator = np.random.default_rng(1)
+    true = [SE3.exp(generator.normal(size=6)) for _ in range(4)]
+    pairs = [(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)]
+    start = [true[0], *(x.retract(generator.normal(size=6) * noise) for x in true[1:])]
+
+    def stored(x):
+        return [float(c) for c in x.coords]
+
+    z = np.array([stored(true[i].between(true[j])) for i, j in pairs])
+    i, j = (np.array(side, dtype=np.int32) for side in zip(*pairs, strict=True))
+    roots = np.array([np.triu(generator.normal(size=(6, 6))) + 4 * np.eye(6) for _ in pairs])
+    return np.array([stored(x) for x in true]), Edges(np.array([stored(x) for x in start]), i, j, z, roots)
+
+
+def test_gauss_newton_finds_the_poses():
+    _, edges = square(0.05)
+    found = solved(edges)
+    assert found.error < 1e-12
+    assert 1 < found.iterations < 10
+
+
+def write_g2o(path, edges: Edges) -> None:
+    def numbers(values):
+        return " ".join(repr(float(v)) for v in values)
+
+    def pose(x):
+        return numbers([*x[4:], *x[:4]])
+
+    lines = [f"VERTEX_SE3:QUAT {k} {pose(x)}" for k, x in enumerate(edges.poses)]
+    for i, j, z, root in zip(edges.i, edges.j, edges.z, edges.sqrt_info, strict=True):
+        information = (root.T @ root)[[*range(3, 6), *range(3)]][:, [*range(3, 6), *range(3)]]
+        lines.append(f"EDGE_SE3:QUAT {i} {j} {pose(z)} {numbers(information[np.triu_indices(6)])}")
+    path.write_text("\n".join(lines) + "\n")
+
+
+def test_gtsam_linearises_the_same(tmp_path):
+    pytest.importorskip("gtsam")
+    _, edges = square(0.3)
+    write_g2o(tmp_path / "square.g2o", edges)
+    _, _, found = read(tmp_path / "square.g2o")
+    np.testing.assert_allclose(found.sqrt_info, edges.sqrt_info, atol=1e-12)
+    report = compare_graph(tmp_path / "square.g2o", rounds=2)
+    assert report.difference <= AGREEMENT
+    assert report.agrees
+    assert [s.error < 1e-9 for s in report.solves] == [True, True]
+
+
+def test_jaxlie_computes_the_same():
+    rows, missing = compare_batches(rounds=1, seed=0, sizes=(20,))
+    assert rows[0].what == "liegen: compile"
+    if missing:
+        assert "jaxlie is not installed" in missing[0].reason
+        pytest.skip(missing[0].reason)
+    assert rows[1].difference < 1e-10
