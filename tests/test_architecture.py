@@ -12,8 +12,8 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
-    "noise", "program", "kernel", "derive", "define", "decorate", "samples", "library", "modules", "sources",
-    "emit",
+    "noise", "program", "kernel", "derive", "gauss_newton", "define", "decorate", "samples", "library",
+    "modules", "sources", "emit",
     "native", "verify", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.

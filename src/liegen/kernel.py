@@ -13,7 +13,8 @@ class Argument:
     """A parameter: ``storage`` names its scalars (``qx`` to ``z`` for SE3), ``dim`` is its tangent's size.
 
     ``shape`` is that of its array: (size,), or (rows, columns) for a matrix, whose storage is row-major.
-    ``meaning`` describes it where no manifold does.
+    ``meaning`` describes it where no manifold does. ``named``: a call gives it by name also where there are
+    no variables.
     """
 
     name: str
@@ -23,6 +24,7 @@ class Argument:
     variable: bool
     shape: tuple[int, ...] = ()
     meaning: str = ""
+    named: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "shape", self.shape or (len(self.storage),))
@@ -100,13 +102,13 @@ class Kernel:
 
     @property
     def positional(self) -> tuple[Argument, ...]:
-        """The arguments without a name in a call: the variables, or all where there are none."""
-        return self.variables or self.arguments
+        """The arguments without a name in a call: the variables; without any, all that are not ``named``."""
+        return self.variables or tuple(a for a in self.arguments if not a.named)
 
     @property
     def keywords(self) -> tuple[Argument, ...]:
         """The arguments that a call names."""
-        return self.given if self.variables else ()
+        return self.given if self.variables else tuple(a for a in self.arguments if a.named)
 
     def jacobian_name(self, output: Output, variable: Argument) -> str:
         """``res_D_x``."""

@@ -49,6 +49,7 @@ class Request:
     noise: str | None = None
     loss: str | None = None
     mode: str | None = None
+    gauss_newton: bool = False
 
     def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
         """The factors that are asked for, of ``source``, whitened and robust as asked for."""
@@ -65,6 +66,7 @@ class Request:
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
         for option in ("chart", "noise", "loss", "mode"):
             words += [f"--{option}", getattr(self, option)] if getattr(self, option) else []
+        words += ["--gauss-newton"] if self.gauss_newton else []
         return shlex.join(words)
 
     @property
@@ -91,17 +93,22 @@ def requested(
     layout: str,
     groups: Sequence[str] = (),
     *options: str | None,
+    gauss_newton: bool = False,
 ) -> Request:
-    """Fill in the defaults; ``weighting`` is noise, loss and mode."""
+    """Fill in the defaults; ``options`` are chart, noise, loss and mode."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
     called = package or default_package(source, groups)
     unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
-    return Request(source, unique[0], wanted, called, layout, unique[1], *options)
+    return Request(source, unique[0], wanted, called, layout, unique[1], *options, gauss_newton=gauss_newton)
 
 
-def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
-    """The kernels; each is derived at its first use."""
-    return [f.kernel for f in tracked(functions, "derive", lambda f: f.name)]
+def derived(functions: Sequence[AnyFunction], *, gauss_newton: bool = False) -> list[Kernel]:
+    """The kernels, those of Gauss-Newton terms behind their factors; each is derived at its first use."""
+    return [
+        kernel
+        for f in tracked(functions, "derive", lambda f: f.name)
+        for kernel in (f.kernel, *([f.gauss_newton_kernel] if gauss_newton else []))
+    ]
 
 
 def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str) -> dict[str, str]:
@@ -109,7 +116,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
     from liegen.emit import check_names, render
     from liegen.verify import check_finite
 
-    kernels = derived(functions)
+    kernels = derived(functions, gauss_newton=request.gauss_newton)
     check_names(kernels, request.package)
     for function in functions:
         check_finite(function)
@@ -146,6 +153,10 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
 )  # fmt: skip
 @chart_option
 @noise_options
+@click.option(
+    "--gauss-newton", is_flag=True,
+    help="Also functions NAME_gauss_newton: cost, gradient and the blocks of J^T J, without storing J.",
+)  # fmt: skip
 def generate(
     source: str | None,
     names: tuple[str, ...],
@@ -158,23 +169,27 @@ def generate(
     noise: str | None,
     loss: str | None,
     mode: str | None,
+    gauss_newton: bool,
 ) -> None:
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout, groups, chart, noise, loss, mode)
+    weighting = (noise, loss, mode)
+    request = requested(
+        source, names, targets, package, layout, groups, chart, *weighting, gauss_newton=gauss_newton
+    )
     functions = request.chosen(source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]
-    derived(functions)
+    kernels = derived(functions, gauss_newton=gauss_newton)
     times.append(time.perf_counter())
     files = rendered(request, functions, request.header)
     times.append(time.perf_counter())
     done = write_tree(files, Path(output))
     table(
         ("factor", "operations", "with Jacobians"),
-        [_row(f.kernel) for f in functions],
+        [_row(kernel) for kernel in kernels],
         right=(1, 2),
     )
     click.echo()

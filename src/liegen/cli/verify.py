@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 #: Checks whose worst figure has a column: relative errors, and the slope of the remainder (2 is right).
 MEASURED = {"value": "value", "Jacobian": "Jacobian", "differences": "differences", "Taylor": "slope"}
+#: Those of checks that not every run has.
+ASKED = {"Gauss-Newton": "J^T J"}
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
 #: Skipped cases that are named for a factor.
@@ -46,6 +48,7 @@ LISTED = 6
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
 @chart_option
+@click.option("--gauss-newton", is_flag=True, help="Also the Gauss-Newton terms of factors.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def verify(
     source: str | None,
@@ -57,6 +60,7 @@ def verify(
     mode: str | None,
     samples: int | None,
     seed: int,
+    gauss_newton: bool,
     as_json: bool,
 ) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
@@ -72,6 +76,7 @@ def verify(
             seed=seed,
             progress=told,
             reload=partial(weighed_by_name, source, groups, chart, noise, loss, mode),
+            gauss_newton=gauss_newton,
         )
     if as_json:
         click.echo(report.to_json(), nl=False)
@@ -97,10 +102,12 @@ def _shown(factors: int) -> Generator[Callable[[FactorReport, int, int], None] |
 
 
 def _print(report: Report, seconds: float) -> None:
+    done = {check.name for f in report.factors for check in f.checks}
+    columns = MEASURED | {name: title for name, title in ASKED.items() if name in done}
     table(
-        ("factor", "checks", *MEASURED.values(), "samples", "skipped"),
-        [_row(f) for f in report.factors],
-        right=range(2, 4 + len(MEASURED)),
+        ("factor", "checks", *columns.values(), "samples", "skipped"),
+        [_row(f, columns) for f in report.factors],
+        right=range(2, 4 + len(columns)),
     )
     for factor in report.factors:
         for line in _remarks(factor):
@@ -118,11 +125,11 @@ def _print(report: Report, seconds: float) -> None:
         click.echo("C was not checked: there is no C compiler (install gcc or clang, or set CC)")
 
 
-def _row(factor: FactorReport) -> tuple[str, ...]:
+def _row(factor: FactorReport, columns: Iterable[str]) -> tuple[str, ...]:
     done = {c.name: c for c in factor.checks if c.checked}
     good = sum(c.passed for c in done.values())
     verdict = f"{good} passed" if good == len(done) else f"{len(done) - good} of {len(done)} FAILED"
-    figures = [_figure(done[name]) if name in done else "" for name in MEASURED]
+    figures = [_figure(done[name]) if name in done else "" for name in columns]
     kept = max((c.kept for c in done.values()), default=0)
     skipped = max((len(c.skipped) for c in done.values()), default=0)
     return factor.factor, verdict, *figures, str(kept), str(skipped)

@@ -6,3 +6,8 @@ from .eliminate import STRATEGIES as STRATEGIES
 from .graph_jacobian import Expressions as Expressions
 from .graph_jacobian import expressions as expressions
 from .graph_jacobian import jacobians as jacobians
+from .graph_jacobian import network as network
+from .normal import Ladder as Ladder
+from .normal import Terms as Terms
+from .normal import ladder as ladder
+from .normal import normal_terms as normal_terms

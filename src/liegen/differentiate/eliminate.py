@@ -51,7 +51,7 @@ def eliminate(edges: Edges, inner: Sequence[int], strategy: Strategy) -> dict[tu
         right = {e: _shared(graph.pop(e), out, strategy) for e in into}
         for (_, to), outer in left.items():
             for (source, _), inner_chain in right.items():
-                accumulate(graph, (source, to), (*outer, *inner_chain), strategy)
+                accumulate(graph, (source, to), (*outer, *inner_chain), strategy.multiply)
     return {edge: strategy.multiply(chain) for edge, chain in graph.items()}
 
 
@@ -61,9 +61,12 @@ def _shared(chain: Chain, users: Iterable[object], strategy: Strategy) -> Chain:
 
 
 def accumulate(
-    graph: dict[tuple[int, int], Chain], edge: tuple[int, int], chain: Chain, strategy: Strategy
+    graph: dict[tuple[int, int], Chain],
+    edge: tuple[int, int],
+    chain: Chain,
+    multiply: Callable[[Chain], Matrix],
 ) -> None:
     """Add a path: parallel edges are summed."""
     if edge in graph:
-        chain = (matadd(strategy.multiply(graph[edge]), strategy.multiply(chain)),)
+        chain = (matadd(multiply(graph[edge]), multiply(chain)),)
     graph[edge] = chain

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from liegen.algebra.casadi_backend import ca
-from liegen.algebra.linear import Chain, Matrix, eye, zeros
+from liegen.algebra.linear import Chain, Matrix, eye, product, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
 from liegen.trace import Graph, topological
 
-from .eliminate import Strategy, accumulate, eliminate
+from .eliminate import Edges, Strategy, accumulate, eliminate
 from .local import local_blocks, symbols
 
 
@@ -40,10 +40,22 @@ def expressions(graph: Graph) -> Expressions:
     return Expressions(inputs, scalars)
 
 
-def jacobians(
-    graph: Graph, values: Expressions, strategy: Strategy, *, through_storage: bool = False
-) -> dict[tuple[str, str], Matrix]:
-    """Jacobian of each output by each variable, {(output, variable): matrix}."""
+@dataclass(frozen=True, eq=False)
+class Network:
+    """The linear maps of a graph between its vertices.
+
+    ``inner`` are the vertices between, in the graph's order; ``sources`` is where each variable begins, as a
+    perturbation in its chart, ``sinks`` where each output ends.
+    """
+
+    edges: Edges
+    inner: tuple[int, ...]
+    sources: Mapping[str, int]
+    sinks: Mapping[str, int]
+
+
+def network(graph: Graph, values: Expressions, *, through_storage: bool = False) -> Network:
+    """The local blocks of every node on a way from a variable to an output, and the charts at both ends."""
     variables = {id(p.node): p for p in graph.parameters if p.variable}
     active = _active(graph)
     edges: dict[tuple[int, int], Chain] = {}
@@ -61,7 +73,7 @@ def jacobians(
         )
         for n, chain in zip(node.operands, blocks, strict=True):
             if chain is not None:
-                accumulate(edges, (id(n), id(node)), chain, strategy)
+                accumulate(edges, (id(n), id(node)), chain, product)
     # an output may feed others too: it ends at a vertex of its own
     sinks = {name: -k - 1 for k, (name, _) in enumerate(graph.outputs)}
     for name, node in graph.outputs:
@@ -75,13 +87,22 @@ def jacobians(
             sources[v] = -k - 1 - len(sinks)
             edges[sources[v], v] = chart.columns(values.scalars[v])
     begun = {v for v, source in sources.items() if v == source}
-    inner = [id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun]
-    products = eliminate(edges, inner, strategy)
+    inner = tuple(id(n) for n in graph.nodes() if id(n) in active and id(n) not in begun)
+    return Network(edges, inner, {p.name: sources[v] for v, p in variables.items()}, sinks)
+
+
+def jacobians(
+    graph: Graph, values: Expressions, strategy: Strategy, *, through_storage: bool = False
+) -> dict[tuple[str, str], Matrix]:
+    """Jacobian of each output by each variable, {(output, variable): matrix}."""
+    net = network(graph, values, through_storage=through_storage)
+    products = eliminate(net.edges, net.inner, strategy)
     return {
-        (name, p.name): products.get((sources[v], sinks[name]))
+        (name, p.name): products.get((net.sources[p.name], net.sinks[name]))
         or zeros(node.manifold.form.dim, p.manifold.form.dim)
         for name, node in graph.outputs
-        for v, p in variables.items()
+        for p in graph.parameters
+        if p.variable
     }
 
 

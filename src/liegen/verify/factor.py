@@ -18,6 +18,7 @@ from .draws import AnyFunction, Samples, batch, draw_samples
 from .expected import Expected, compare, expect
 from .gradient import gradient, not_applicable
 from .in_place import in_place
+from .normal_terms import normal_terms
 from .report import Check, FactorReport
 from .taylor import taylor
 
@@ -30,9 +31,18 @@ SINGLE = 4
 
 
 def check_factor(
-    function: AnyFunction, place: Workspace, samples: int, seed: int, *, conditioned: bool
+    function: AnyFunction,
+    place: Workspace,
+    samples: int,
+    seed: int,
+    *,
+    conditioned: bool,
+    gauss_newton: bool = False,
 ) -> FactorReport:
-    """Draw ``samples`` samples and run every check. ``conditioned`` as in :func:`expect`."""
+    """Draw ``samples`` samples and run every check.
+
+    ``conditioned`` as in :func:`expect`; ``gauss_newton``: of the Gauss-Newton terms too.
+    """
     drawn = draw_samples(function, samples, seed)
     if not drawn.inside:
         return FactorReport(function.name, (_nothing(function, drawn),))
@@ -40,6 +50,7 @@ def check_factor(
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
     weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
+    terms = [normal_terms(function, place, drawn, expected, results[TAKEN])] if gauss_newton else []
     if weighting:
         expected = replace(expected, blocks=tuple(b for b in expected.blocks if b.is_value))
     singles = {
@@ -54,6 +65,7 @@ def check_factor(
             agreement(expected, results | singles),
             domain(function, drawn, computed, seed),
             *(not_applicable(name, weighting.mode.name) for name in ("Jacobian", "differences", "Taylor")),
+            *terms,
             _compiled(place),
         )
         return FactorReport(function.name, checks)
@@ -68,6 +80,7 @@ def check_factor(
                 if function.kernel.variables
                 else ()
             ),
+            *terms,
             *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
             _compiled(place),
         ),
