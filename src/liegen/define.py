@@ -79,9 +79,8 @@ class Function(Generic[P, T]):
         from liegen.gauss_newton import gauss_newton_kernel
 
         if not self.is_factor:
-            raise DefinitionError(
-                f"{here()}: {self.name} is a @function, without a residual; Gauss-Newton terms are of a @factor"
-            )
+            what = "is a @function, without a residual; Gauss-Newton terms are of a @factor"
+            raise DefinitionError(f"{here()}: {self.name} {what}")
         return gauss_newton_kernel(self.kernel, self.plain, self.weighting)
 
     @property
