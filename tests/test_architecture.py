@@ -14,7 +14,7 @@ LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "uncertainty", "trace", "differentiate",
     "noise", "program", "kernel", "derive", "gauss_newton", "define", "decorate", "samples", "library",
     "modules", "sources", "emit",
-    "native", "verify", "foreign", "bench", "explain", "cli",
+    "native", "runtime", "verify", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")

@@ -42,3 +42,11 @@ class OutputError(LiegenError):
 
 class ToolError(LiegenError):
     """An outside tool (a C compiler) is missing or failed."""
+
+
+class CompilerWarning(UserWarning):
+    """There is no C compiler, so that compiled factors run as NumPy code."""
+
+
+class CacheWarning(UserWarning):
+    """The cache of compiled factors cannot be used; the message says why."""

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
+import platform
 import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 from liegen.errors import ToolError
@@ -14,12 +18,59 @@ from liegen.errors import ToolError
 COMPILERS = ("cc", "gcc", "clang")
 
 
+#: What tells one processor from another where ``-march=native`` decides, in /proc/cpuinfo.
+_PROCESSOR = (
+    "vendor_id", "cpu family", "model", "model name", "stepping", "flags",
+    "Features", "CPU implementer", "CPU architecture", "CPU variant", "CPU part",
+)  # fmt: skip
+
+
 def find_compiler() -> tuple[str, ...]:
-    """The command of a C compiler: ``$CC``, else cc, gcc or clang; empty where there is none."""
+    """The command of a C compiler: ``$CC``, else cc, gcc or clang, else Zig's; empty where there is none.
+
+    Zig's is ``zig cc``, or ``python -m ziglang cc`` where the package ziglang is installed.
+    """
     named = tuple(shlex.split(os.environ.get("CC", "")))
     if named and shutil.which(named[0]):
         return named
-    return next(((name,) for name in COMPILERS if shutil.which(name)), ())
+    return next(((name,) for name in COMPILERS if shutil.which(name)), _zig())
+
+
+def _zig() -> tuple[str, ...]:
+    if shutil.which("zig"):
+        return ("zig", "cc")
+    return (sys.executable, "-m", "ziglang", "cc") if importlib.util.find_spec("ziglang") else ()
+
+
+@cache
+def compiler_version(command: tuple[str, ...]) -> str:
+    """What the compiler says of itself; empty where it does not."""
+    try:
+        done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
+    except OSError:
+        return ""
+    return done.stdout
+
+
+@cache
+def processor() -> str:
+    """What tells this machine's processor from others: code made for one may not run on another."""
+    try:
+        first = Path("/proc/cpuinfo").read_text(encoding="utf-8").split("\n\n")[0]
+    except OSError:
+        return f"{platform.machine()} {_brand() or platform.processor()}"
+    lines = [line.split(":", 1) for line in first.splitlines() if ":" in line]
+    known = [f"{key.strip()}:{value.strip()}" for key, value in lines if key.strip() in _PROCESSOR]
+    return "\n".join([platform.machine(), *known])
+
+
+def _brand() -> str:
+    """The name of a processor on macOS."""
+    tool = shutil.which("sysctl")
+    if not tool:
+        return ""
+    command = [tool, "-n", "machdep.cpu.brand_string"]
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
 
 
 def compile_shared(sources: Sequence[Path], library: Path, flags: Sequence[str]) -> None:

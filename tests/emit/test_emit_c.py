@@ -111,7 +111,7 @@ def test_c_and_cpp_take_the_code_without_a_warning(tmp_path: Path) -> None:
     """The sources as C++, and C++ that calls the sources compiled as C99."""
     write_tree(render(examples(), ["c"], package="demo", regenerate=REGENERATE, layout="col"), tmp_path)
     sources = sorted((tmp_path / "c").glob("*.c"))
-    assert len(sources) == 3
+    assert len(sources) == 6
     cpp = compiler("c++")
     for source in sources:
         for standard in ("-std=c++98", "-std=c++17"):

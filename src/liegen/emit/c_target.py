@@ -9,6 +9,7 @@ from liegen.errors import DefinitionError
 from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
+from .c_batch import batch_name, printed_batch
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .printer import Assignment, Listing, Store, print_program
 from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
@@ -34,8 +35,8 @@ SYNTAX = Syntax(
 
 _TYPES = {"scalar": "double", "condition": "int"}
 _STATUS = "The result is 0, or the bits of the requirements that do not hold."
-#: Requirements that a non-negative ``int`` has bits for.
-_BITS = 31
+#: Requirements that the status of a batch, a byte for each factor, has bits for.
+_BITS = 8
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def value_name(kernel: Kernel) -> str:
 
 def symbols(kernel: Kernel) -> tuple[str, ...]:
     """What the source of a kernel defines, without the package's prefix, in either layout."""
-    return (kernel.name, value_name(kernel), f"{kernel.name}_cm")
+    return (kernel.name, value_name(kernel), f"{kernel.name}_cm", batch_name(kernel))
 
 
 def _assign(assignment: Assignment) -> str:
@@ -144,7 +145,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
     if len(kernel.value.requirements) > _BITS:
         raise DefinitionError(
             f"{kernel.name} ({kernel.site}): {len(kernel.value.requirements)} requirements, but the status "
-            f"of the C function has {_BITS} bits; join some conditions"
+            f"of a factor has {_BITS} bits in C; join some conditions"
         )
     value, name = value_name(kernel), kernel.name
     functions = [_function(kernel, kernel.value, options, value, False)]
@@ -165,6 +166,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
         "shapes": (*_overlap(kernel), *shapes),
         "checked": bool(kernel.value.requirements),
         "fill": f"{options.package}_{name}_fill",
+        **printed_batch(kernel, options),
     }
 
 
@@ -196,6 +198,11 @@ TARGET = Target(
     factor_sheets=(
         Sheet("c/factor.h.j2", "c/{factor}.h"),
         Sheet("c/factor.c.j2", "c/{factor}.c"),
+        Sheet("c/batch.c.j2", "c/{factor}_batch.c"),
     ),
-    package_sheets=(Sheet("c/package.h.j2", "c/{package}.h"),),
+    package_sheets=(
+        Sheet("c/package.h.j2", "c/{package}.h"),
+        Sheet("c/batch.h.j2", "c/{package}_batch.h"),
+        Sheet("c/lanes.h.j2", "c/{package}_lanes.h"),
+    ),
 )

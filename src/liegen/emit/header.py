@@ -7,6 +7,7 @@ from inspect import cleandoc
 from textwrap import wrap
 
 from liegen.kernel import Argument, Kernel, Output
+from liegen.program import Program
 
 from .target import Options
 
@@ -98,6 +99,27 @@ def package_header(kernels: Sequence[Kernel], options: Options) -> tuple[str, ..
     return tuple(line.rstrip() for line in [*lines, "", *closing(options)])
 
 
+def array_text(shape: Sequence[int]) -> str:
+    """``(..., 6, 6)``."""
+    return f"(..., {', '.join(map(str, shape))})"
+
+
+def interface_doc(kernel: Kernel, program: Program) -> tuple[str, ...]:
+    """The docstring of a Python function on arrays: what it computes, arguments, results, domain."""
+    meanings = {o.name: storage_text(o) for o in kernel.outputs}
+    meanings |= {name: meaning for name, _, meaning in jacobian_texts(kernel)}
+    lines = doc_lines(kernel)
+    if len(program.outputs) > len(kernel.outputs):
+        lines += ["", "With the Jacobians by the tangent of every variable."]
+    lines += ["", "Arguments:"]
+    lines += [f"    {a.name}: {array_text(a.shape)} {argument_text(a)}" for a in kernel.arguments]
+    lines += ["", "Returns:"]
+    lines += [f"    {port.name}: {array_text(port.shape)} {meanings[port.name]}" for port in program.outputs]
+    if program.requirements:
+        lines += ["", "NaN outside of the domain:", *(f"    {r.message}" for r in program.requirements)]
+    return tuple(lines)
+
+
 def _wrapped(line: str) -> list[str]:
     return wrap(
         line,
@@ -133,3 +155,15 @@ def docstring(lines: Sequence[str], indent: int) -> str:
     body = "\n".join(f"{pad}{line}".rstrip() for line in safe).lstrip()
     end = f"\n{pad}" if len(safe) > 1 else ""
     return f'"""{body}{end}"""'
+
+
+def c_string(text: str) -> str:
+    """A C string literal, one line of text a line."""
+    lines = [_escaped(line) for line in text.split("\n")]
+    return "\n    ".join(f'"{line}"' for line in [*(f"{line}\\n" for line in lines[:-1]), lines[-1]])
+
+
+def _escaped(line: str) -> str:
+    plain = {ord(c): f"\\{c}" for c in '"\\?'}  # ?: no trigraphs
+    escaped = line.translate(plain)
+    return "".join(c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode()) for c in escaped)

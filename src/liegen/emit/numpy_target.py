@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from liegen.kernel import Argument, Kernel
 from liegen.program import Port, Program
 
-from .header import argument_text, doc_lines, jacobian_texts, kernel_header, storage_text
+from .header import array_text, interface_doc, kernel_header
 from .printer import Listing, Load, print_program
 from .syntax import COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
 from .target import Options, Sheet, Target, scalar_names, words
@@ -128,11 +128,7 @@ def _broken(opening: str, items: Sequence[str], closing: str, *, comma: bool = F
 
 
 def _shape(port: Port) -> str:
-    return _array(port.shape)
-
-
-def _array(shape: Sequence[int]) -> str:
-    return f"(..., {', '.join(map(str, shape))})"
+    return array_text(port.shape)
 
 
 def _argument(kernel: Kernel, a: Argument) -> str:
@@ -141,22 +137,7 @@ def _argument(kernel: Kernel, a: Argument) -> str:
     return f'("{a.name}", {flat}, {a.size})'
 
 
-def _doc(kernel: Kernel, program: Program, meanings: Mapping[str, str], tail: str) -> tuple[str, ...]:
-    lines = doc_lines(kernel)
-    lines = [*lines, *tail.splitlines(), "", "Arguments:"]
-    lines += [f"    {a.name}: {_array(a.shape)} {argument_text(a)}" for a in kernel.arguments]
-    lines += ["", "Returns:"]
-    lines += [f"    {port.name}: {_shape(port)} {meanings[port.name]}" for port in program.outputs]
-    if program.requirements:
-        lines += ["", "NaN outside of the domain:", *(f"    {r.message}" for r in program.requirements)]
-    return tuple(lines)
-
-
-def _interface(
-    kernel: Kernel, program: Program, name: str, private: str, record: str, tail: str
-) -> Interface:
-    meanings = {o.name: storage_text(o) for o in kernel.outputs}
-    meanings |= {name: meaning for name, _, meaning in jacobian_texts(kernel)}
+def _interface(kernel: Kernel, program: Program, name: str, private: str, record: str) -> Interface:
     typed = [f"{a.name}: npt.ArrayLike" for a in kernel.positional]
     typed += ["*"] if kernel.keywords else []
     typed += [f"{a.name}: npt.ArrayLike" for a in kernel.keywords]
@@ -169,7 +150,7 @@ def _interface(
         record=record,
         record_doc=f"What :func:`{name}` returns.",
         fields=tuple((port.name, _shape(port)) for port in program.outputs),
-        doc=_doc(kernel, program, meanings, tail),
+        doc=interface_doc(kernel, program),
     )
 
 
@@ -178,14 +159,11 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
     several = len(kernel.outputs) > 1
     record, alone = camel(kernel.name), f"{camel(kernel.name)}Outputs" if several else ""
     jacobians = f"{kernel.name}_jacobians"
-    tail = "\nWith the Jacobians by the tangent of every variable."
     functions = [_function("_value", kernel, kernel.value)]
-    interfaces = [_interface(kernel, kernel.value, kernel.name, "_value", alone, "")]
+    interfaces = [_interface(kernel, kernel.value, kernel.name, "_value", alone)]
     if kernel.variables:
         functions.append(_function("_jacobians", kernel, kernel.jacobians))
-        interfaces.append(
-            _interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians", tail)
-        )
+        interfaces.append(_interface(kernel, kernel.jacobians, jacobians, "_jacobians", f"{record}Jacobians"))
     lines = [line for f in functions for line in (*f.statements, *f.stores)]
     return {
         "header": kernel_header(kernel, options),

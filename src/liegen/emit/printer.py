@@ -122,6 +122,11 @@ def _kinds(program: Program) -> list[Kind]:
     return kinds
 
 
+def condition_indices(program: Program) -> frozenset[int]:
+    """The selects whose arms are conditions, and every other condition."""
+    return frozenset(k for k, kind in enumerate(_kinds(program)) if kind == "condition")
+
+
 def _leaves(program: Program, syntax: Syntax, scalars: Sequence[str], usage: _Usage) -> dict[int, Expression]:
     """The texts of inputs and constants."""
     inputs = {
@@ -179,7 +184,7 @@ def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> L
         body=tuple(body),
         stores=tuple(
             tuple(
-                Store(port.name, place, texts[k].text)
+                Store(port.name, place, syntax.result(texts[k]))
                 for place, k in zip(np.ndindex(port.shape), indices, strict=True)
             )
             for port, indices in zip(program.outputs, program.results, strict=True)

@@ -11,7 +11,7 @@ from liegen.errors import OutputError
 from liegen.kernel import Kernel
 from liegen.program import Program
 
-from .header import content, package_header
+from .header import closing, content, package_header
 from .names import check_names
 from .target import Options, Target
 from .targets import TARGETS
@@ -67,6 +67,7 @@ def _render_target(target: Target, kernels: Sequence[Kernel], options: Options) 
     shared = {
         "package": options.package,
         "header": package_header(kernels, options),
+        "closing": list(closing(options)),
         "content": content(kernels).capitalize(),
         "guard_macro": f"{options.package}_H".upper(),
         "factors": printed,

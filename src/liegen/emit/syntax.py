@@ -22,18 +22,20 @@ class Operator:
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """Text, how strongly its outermost operator binds, and that operator's family."""
+    """Text, how strongly its outermost operator binds, that operator's family, and whether it is a number."""
 
     text: str
     binding: int = ATOM
     family: str = ""
+    number: bool = False
 
 
 @dataclass(frozen=True)
 class Syntax:
     """How a language spells the operations of a program.
 
-    ``choice`` is the format of a select where it is no call: ``"{0} ? {1} : {2}"``.
+    ``choice`` is the format of a select where it is no call: ``"{0} ? {1} : {2}"``. ``lift`` is the format of
+    a number where the language takes no plain one: as an argument of a call and as a result.
     """
 
     operators: Mapping[str, Operator]
@@ -41,13 +43,14 @@ class Syntax:
     constant: Callable[[float], str]
     truth: Mapping[bool, str]
     choice: str = ""
+    lift: str = ""
 
     def express(self, op: str, operands: Sequence[Expression]) -> Expression:
         """The text of one operation."""
         if op == "select" and self.choice:
             return Expression(self.choice.format(*(_wrap(x, x.binding > CHOICE) for x in operands)), CHOICE)
         if op not in self.operators:
-            return Expression(f"{self.calls[op]}({', '.join(x.text for x in operands)})")
+            return Expression(f"{self.calls[op]}({', '.join(self.result(x) for x in operands)})")
         last = operands[-1]
         if op in _OPPOSITE and last.family == "negative":  # a + (-c) is a - c, to the last bit
             return self.express(_OPPOSITE[op], [operands[0], Expression(last.text[1:])])
@@ -64,10 +67,20 @@ class Syntax:
             text = f"{left} {operator.symbol} {right}"
         return Expression(text, operator.binding, operator.family)
 
+    def result(self, operand: Expression) -> str:
+        """The text of an operand that stands alone."""
+        return self.lift.format(operand.text) if self.lift and operand.number else operand.text
+
     def literal(self, value: float | bool) -> Expression:
         """A constant, by the shortest text that reads back as the same number."""
-        text = self.truth[value] if isinstance(value, bool) else self.constant(value)
-        return Expression(text, PREFIX, "negative") if text.startswith("-") else Expression(text)
+        if isinstance(value, bool):
+            return Expression(self.truth[value])
+        text = self.constant(value)
+        return (
+            Expression(text, PREFIX, "negative", True)
+            if text.startswith("-")
+            else Expression(text, number=True)
+        )
 
 
 def _wrap(operand: Expression, bare: bool) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from .header import c_comment, docstring, hash_comment
+from .header import c_comment, c_string, docstring, hash_comment
 
 
 def template_folder() -> Path:
@@ -30,7 +30,12 @@ def _environment() -> Environment:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    filters: dict[str, Any] = {"c_comment": c_comment, "docstring": docstring, "hash_comment": hash_comment}
+    filters: dict[str, Any] = {
+        "c_comment": c_comment,
+        "c_string": c_string,
+        "docstring": docstring,
+        "hash_comment": hash_comment,
+    }
     environment.filters.update(filters)
     return environment
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 import tempfile
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.emit import render
+from liegen.emit.importing import load_modules
 from liegen.kernel import Kernel
 from liegen.program import Program
 
@@ -119,25 +118,5 @@ def _called(function: Any, kernel: Kernel, arguments: Arrays) -> Any:
 
 def load_package(folder: Path) -> Any:
     """Import a package from its folder and leave no trace of it in ``sys.modules``."""
-    name = folder.name
-    spec = importlib.util.spec_from_file_location(
-        name, folder / "__init__.py", submodule_search_locations=[str(folder)]
-    )
-    if spec is None or spec.loader is None:
-        raise ImportError(f"cannot import the generated package from {folder}")
-    before = {key: module for key, module in sys.modules.items() if _within(key, name)}
-    for key in before:
-        del sys.modules[key]
-    package = importlib.util.module_from_spec(spec)
-    sys.modules[name] = package
-    try:
-        spec.loader.exec_module(package)
-    finally:
-        for key in [key for key in sys.modules if _within(key, name)]:
-            del sys.modules[key]
-        sys.modules.update(before)
-    return package
-
-
-def _within(module: str, package: str) -> bool:
-    return module == package or module.startswith(f"{package}.")
+    texts = {path.name: path.read_text(encoding="utf-8") for path in folder.glob("*.py")}
+    return load_modules(texts, folder.name)

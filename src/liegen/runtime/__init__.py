@@ -1,0 +1,7 @@
+"""Factors compiled and called from Python."""
+
+from __future__ import annotations
+
+from .compiled import Compiled as Compiled
+from .compiled import Indexed as Indexed
+from .compiled import compile as compile

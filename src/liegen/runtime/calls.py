@@ -1,0 +1,139 @@
+"""``Call``: one method of a compiled factor, with the signature of the factor."""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache, partial
+from inspect import Parameter as Place
+from inspect import Signature
+from typing import Any, NoReturn
+
+import numpy as np
+
+from liegen.errors import DefinitionError
+from liegen.manifolds import Value
+
+from .source import Parameter, Source
+
+#: Arrays in the order of the parameters in, an array or a tuple of arrays out, and ``out=``: as a gufunc.
+Evaluate = Callable[..., Any]
+
+
+@cache
+def record(name: str, fields: tuple[str, ...]) -> type[tuple[Any, ...]]:
+    """A named tuple; its values can be pickled although no module holds the class."""
+    base: Any = namedtuple(name, fields)  # pyright: ignore[reportUntypedNamedTuple]
+    return type(name, (base,), {"__slots__": (), "__reduce__": _reduced, "__module__": __name__})
+
+
+def _reduced(values: Any) -> tuple[Any, ...]:
+    return _restored, (type(values).__name__, values._fields, tuple(values))
+
+
+def _restored(name: str, fields: tuple[str, ...], values: tuple[Any, ...]) -> tuple[Any, ...]:
+    made: Any = record(name, fields)
+    return made._make(values)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Call:
+    """Callable on arrays (..., n) and on typed values; keyword-only arguments by name.
+
+    ``out`` is an array, or a tuple of arrays where there are several results. Raises TypeError for missing or
+    unknown arguments, DefinitionError for a typed value of another manifold, and what NumPy raises for wrong
+    shapes and dtypes.
+    """
+
+    name: str
+    method: str
+    parameters: tuple[Parameter, ...]
+    evaluate: Evaluate
+    make: Any = None  # of the results, the tuple that is returned
+    doc: str = ""
+    owner: Any = field(default=None, init=False)  # the compiled factor that this is a method of
+    _positional: int = field(init=False)
+    _keywords: tuple[str, ...] = field(init=False)
+
+    def __post_init__(self) -> None:
+        keywords = tuple(p.name for p in self.parameters if p.keyword)
+        object.__setattr__(self, "_positional", len(self.parameters) - len(keywords))
+        object.__setattr__(self, "_keywords", keywords)
+        object.__setattr__(self, "__doc__", self.doc)
+        object.__setattr__(self, "__name__", self.name)
+        object.__setattr__(self, "__signature__", signature(self.parameters))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return getattr, (self.owner, self.method)
+
+    def __call__(self, /, *arrays: Any, out: Any = None, **given: Any) -> Any:
+        """Evaluate; the docstring of the instance describes arguments and results."""
+        if len(arrays) == self._positional and len(given) == len(self._keywords):
+            try:
+                for name in self._keywords:
+                    arrays += (given[name],)
+            except KeyError:
+                self._refuse(arrays, given)
+        else:
+            arrays = self._bound(arrays, given)
+        for array in arrays:
+            if isinstance(array, Value):
+                arrays = self._plain(arrays)
+                break
+        results = self.evaluate(*arrays) if out is None else self.evaluate(*arrays, out=out)
+        return results if self.make is None else self.make(results)
+
+    def __repr__(self) -> str:
+        return f"<compiled {self.name}{signature(self.parameters)}>"
+
+    def _bound(self, arrays: Sequence[Any], given: Mapping[str, Any]) -> tuple[Any, ...]:
+        """The slow way: positional arguments may be named too."""
+        if len(arrays) > self._positional:
+            self._refuse(arrays, given)
+        names = [p.name for p in self.parameters]
+        named = dict(zip(names, arrays, strict=False))
+        if named.keys() & given.keys() or {*named, *given} != set(names):
+            self._refuse(arrays, given)
+        named.update(given)
+        return tuple(named[name] for name in names)
+
+    def _refuse(self, arrays: Sequence[Any], given: Mapping[str, Any]) -> NoReturn:
+        names = [p.name for p in self.parameters]
+        passed = [*names[: min(len(arrays), self._positional)], *given]
+        missing = [name for name in names if name not in passed]
+        unknown = [name for name in given if name not in names]
+        twice = [name for name in passed if passed.count(name) > 1]
+        problems = [
+            f"{what} {', '.join(dict.fromkeys(which))}"
+            for what, which in (("missing", missing), ("unknown", unknown), ("given twice", twice))
+            if which
+        ] or [f"{len(arrays)} positional arguments"]
+        usage = ", ".join(f"{p.name}=" if p.keyword else p.name for p in self.parameters)
+        raise TypeError(f"{self.name}: {'; '.join(problems)}; call it as {self.name}({usage})")
+
+    def _plain(self, values: Sequence[Any]) -> tuple[Any, ...]:
+        """Typed values as arrays."""
+        for p, value in zip(self.parameters, values, strict=True):
+            if isinstance(value, Value) and value.form.name != p.manifold:
+                raise DefinitionError(
+                    f"{self.name}: argument {p.name!r} must be {p.manifold}, got {value.form.name}"
+                )
+        return tuple(np.asarray(v) if isinstance(v, Value) else v for v in values)
+
+
+def signature(parameters: Sequence[Parameter]) -> Signature:
+    """What ``inspect.signature`` and ``help`` show."""
+    places = [
+        Place(p.name, Place.KEYWORD_ONLY if p.keyword else Place.POSITIONAL_OR_KEYWORD) for p in parameters
+    ]
+    return Signature([*places, Place("out", Place.KEYWORD_ONLY, default=None)])
+
+
+def call(source: Source, method: str, evaluate: Evaluate) -> Call:
+    """The method of a factor on top of what evaluates it."""
+    described = next(m for m in source.methods if m.name == method)
+    fields = tuple(port.name for port in described.outputs)
+    made: Any = record(source.records[method], fields) if len(fields) > 1 else None
+    make = partial(tuple.__new__, made) if made else None  # pyright: ignore[reportUnknownMemberType]
+    return Call(described.title, method, source.parameters, evaluate, make, source.docs[method])

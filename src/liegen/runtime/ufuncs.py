@@ -1,0 +1,55 @@
+"""gufuncs from a plain shared object: NumPy's own C function, found in its table, called through ctypes."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+#: PyUFunc_FromFuncAndDataAndSignature in the table of NumPy's ufunc API, the same in 1.x and 2.x.
+_FROM_SIGNATURE = 31
+#: PyUFunc_None: a reduction would have no identity.
+_NO_IDENTITY = -1
+
+
+class _Description(ctypes.Structure):
+    """The structure ``gufunc`` of ``templates/runtime/strided.c.j2``."""
+
+    _fields_ = (
+        ("loops", ctypes.c_void_p),
+        ("data", ctypes.c_void_p),
+        ("types", ctypes.c_void_p),
+        ("ntypes", ctypes.c_int),
+        ("nin", ctypes.c_int),
+        ("nout", ctypes.c_int),
+        ("name", ctypes.c_void_p),
+        ("doc", ctypes.c_void_p),
+        ("signature", ctypes.c_void_p),
+    )
+
+
+@cache
+def _constructor() -> Any:
+    """``PyUFunc_FromFuncAndDataAndSignature`` as a function of ctypes that holds the interpreter's lock."""
+    module: Any = importlib.import_module("numpy._core._multiarray_umath")
+    address_of = ctypes.pythonapi.PyCapsule_GetPointer
+    address_of.restype, address_of.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
+    table = ctypes.cast(address_of(module._UFUNC_API, None), ctypes.POINTER(ctypes.c_void_p))
+    pointer, number = ctypes.c_void_p, ctypes.c_int
+    arguments = [pointer] * 3 + [number] * 4 + [pointer] * 2 + [number, pointer]
+    return ctypes.PYFUNCTYPE(ctypes.py_object, *arguments)(table[_FROM_SIGNATURE])
+
+
+def gufunc(library: ctypes.CDLL, symbol: str) -> np.ufunc:
+    """The gufunc that the shared object describes under ``symbol``.
+
+    NumPy keeps pointers to loops, types and texts: they are static data of the library, which is never
+    unloaded.
+    """
+    d = _Description.in_dll(library, symbol)
+    return _constructor()(
+        d.loops, d.data, d.types, d.ntypes, d.nin, d.nout, _NO_IDENTITY, d.name, d.doc, 0, d.signature
+    )

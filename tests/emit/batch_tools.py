@@ -1,0 +1,112 @@
+"""Call the generated batches through ctypes: arrays in every layout, and canaries around what is written."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from liegen.kernel import Kernel
+
+CANARY = 777.0
+
+
+class In(ctypes.Structure):
+    _fields_ = [
+        ("data", ctypes.c_void_p), ("stride", ctypes.c_ssize_t), ("comp", ctypes.c_ssize_t),
+        ("index", ctypes.c_void_p),
+    ]  # fmt: skip
+
+
+class Out(ctypes.Structure):
+    _fields_ = [("data", ctypes.c_void_p), ("stride", ctypes.c_ssize_t), ("comp", ctypes.c_ssize_t)]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How an array of n elements of some size lies in memory: offset of the first, stride, comp."""
+
+    name: str
+    offset: int = 0
+    gap: int = 0
+    structure_of_arrays: bool = False
+    dtype: type = field(default=np.float64)
+
+    def steps(self, n: int, size: int) -> tuple[int, int]:
+        return (1, n + self.gap) if self.structure_of_arrays else (size + self.gap, 1)
+
+    def blank(self, n: int, size: int) -> np.ndarray:
+        """Room for n elements, with canaries on all sides."""
+        return np.full(self.offset + (n + self.gap + 2) * (size + self.gap + 2) + 8, CANARY, self.dtype)
+
+    def view(self, flat: np.ndarray, n: int, size: int) -> np.ndarray:
+        stride, comp = (step * flat.itemsize for step in self.steps(n, size))
+        return np.lib.stride_tricks.as_strided(flat[self.offset :], (n, size), (stride, comp))
+
+
+PACKED = Layout("packed")
+LAYOUTS = (
+    PACKED,
+    Layout("unaligned", offset=1),
+    Layout("apart", offset=3, gap=2),
+    Layout("structure of arrays", structure_of_arrays=True),
+    Layout("structure of arrays, apart", offset=5, gap=3, structure_of_arrays=True),
+)
+
+
+def call_batch(
+    function: ctypes._NamedFuncPointer,
+    kernel: Kernel,
+    values: Mapping[str, np.ndarray],
+    n: int,
+    *,
+    into: Layout = PACKED,
+    outof: Layout = PACKED,
+    wanted: Sequence[str] | None = None,
+    index: Mapping[str, np.ndarray] | None = None,
+    broadcast: Sequence[str] = (),
+    with_status: bool = True,
+) -> tuple[int, dict[str, np.ndarray], np.ndarray | None]:
+    """Return value, outputs (n, size) and status; checks that nothing beside the outputs was written."""
+    index = index or {}
+    ins: list[In] = []
+    keep: list[np.ndarray] = []
+    for a in kernel.arguments:
+        rows = np.asarray(values[a.name])
+        flat = outof.blank(len(rows), a.size)
+        outof.view(flat, len(rows), a.size)[:] = rows
+        stride, comp = outof.steps(len(rows), a.size)
+        chosen = np.ascontiguousarray(index[a.name], dtype=np.int32) if a.name in index else None
+        keep += [flat] + ([] if chosen is None else [chosen])
+        place = flat.ctypes.data + outof.offset * flat.itemsize
+        ins.append(
+            In(
+                place,
+                0 if a.name in broadcast else stride,
+                comp,
+                None if chosen is None else chosen.ctypes.data,
+            )
+        )
+    ports = kernel.jacobians.outputs
+    flats = {p.name: into.blank(n, p.size) for p in ports if wanted is None or p.name in wanted}
+    outs = [
+        Out(flats[p.name].ctypes.data + into.offset * flats[p.name].itemsize, *into.steps(n, p.size))
+        if p.name in flats
+        else Out(None, 0, 0)
+        for p in ports
+    ]
+    status = np.full(n + 2, 99, np.uint8)
+    function.restype = ctypes.c_int
+    function.argtypes = [ctypes.c_ssize_t] + [In] * len(ins) + [Out] * len(outs) + [ctypes.c_void_p]
+    code = function(n, *ins, *outs, status.ctypes.data + 1 if with_status else None)
+    assert status[0] == status[-1] == 99
+    got: dict[str, np.ndarray] = {}
+    for p in ports:
+        if p.name in flats:
+            view = into.view(flats[p.name], n, p.size)
+            got[p.name] = view.copy()
+            view[:] = CANARY
+            assert (flats[p.name] == CANARY).all(), f"{p.name}: written beside the output"
+    return code, got, status[1:-1] if with_status else None
