@@ -1,0 +1,7 @@
+"""What the tests of compiled factors share."""
+
+import pytest
+
+from liegen.native import find_compiler
+
+needs_compiler = pytest.mark.skipif(not find_compiler(), reason="no C compiler")

@@ -1,0 +1,364 @@
+"""Compiled factors: values, shapes, strides, dtypes, errors, on C and on NumPy code."""
+
+from __future__ import annotations
+
+import inspect
+import threading
+import time
+
+import numpy as np
+import pytest
+from runtime_factors import (
+    FACTORS,
+    arguments,
+    between,
+    drift,
+    pixel,
+    quotient,
+    rotated,
+    scrambled,
+    step,
+    swapped,
+)
+from runtime_tools import needs_compiler
+from scipy.linalg import expm
+from scipy.spatial.transform import Rotation
+
+import liegen
+from liegen import R3, SE3, SO3, DefinitionError
+
+
+def results(value):
+    return list(value) if isinstance(value, tuple | list) else [value]
+
+
+def close(a, b):
+    for u, v in zip(results(a), results(b), strict=True):
+        assert u.shape == v.shape
+        np.testing.assert_allclose(u, v, rtol=1e-11, atol=1e-12)
+
+
+# --- values -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (2, 3), (19,)])
+@pytest.mark.parametrize("factor", FACTORS, ids=lambda f: f.name)
+def test_same_values_as_the_formula(compiled, factor, shape):
+    k = compiled(factor)
+    variables, given = arguments(factor, shape)
+    kernel = factor.kernel
+    named = dict(zip([a.name for a in kernel.positional], variables, strict=True)) | given
+    flat = {a.name: np.moveaxis(named[a.name].reshape(*shape, -1), -1, 0) for a in kernel.arguments}
+    programs = [("value", kernel.value)] + ([("jacobians", kernel.jacobians)] if kernel.variables else [])
+    for method, program in programs:
+        expected = program.evaluate({name: tuple(a) for name, a in flat.items()})
+        made = results(k.calls[method](*variables, **given))
+        assert len(made) == len(program.outputs)
+        for port, array in zip(program.outputs, made, strict=True):
+            stacked = np.stack(
+                np.broadcast_arrays(*expected[port.name], flat[kernel.arguments[0].name][0])[:-1], -1
+            )
+            assert array.shape == (*shape, *port.shape)
+            np.testing.assert_allclose(array, stacked.reshape(*shape, *port.shape), rtol=1e-11, atol=1e-12)
+
+
+def matrix(pose):
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = Rotation.from_quat(pose[:4]).as_matrix(), pose[4:]
+    return T
+
+
+def test_between_by_its_definition(compiled):
+    (x, y), given = arguments(between, (5,))
+    r = compiled(between)(x, y, **given)
+    for k in range(5):
+        w, v = r[k, :3], r[k, 3:]
+        hat = np.array([[0, -w[2], w[1], v[0]], [w[2], 0, -w[0], v[1]], [-w[1], w[0], 0, v[2]], [0] * 4])
+        relative = np.linalg.solve(matrix(x[k]), matrix(y[k]))
+        np.testing.assert_allclose(matrix(given["z"][k]) @ expm(hat), relative, atol=1e-12)
+
+
+def test_arguments_are_called_in_the_order_of_the_call(compiled):
+    k = compiled(swapped)
+    assert str(inspect.signature(k)) == "(b, c, *, a, out=None)"
+    np.testing.assert_allclose(k([1.0, 2], [5.0, 0, 0], a=[3.0]), [3, 6, 5, 10])
+    np.testing.assert_allclose(compiled(scrambled)([3.0], [1.0, 2], c=[5.0, 0, 0]), [3, 6, 5, 10])
+
+
+def test_jacobians_are_a_named_tuple(compiled):
+    variables, given = arguments(between, (4,))
+    made = compiled(between).jacobians(*variables, **given)
+    assert type(made).__name__ == "BetweenSe3Jacobians"
+    assert made._fields == ("res", "res_D_x", "res_D_y")
+    assert made.res_D_y.shape == (4, 6, 6)
+    outputs = compiled(step)(*arguments(step)[0], **arguments(step)[1])
+    assert outputs._fields == ("R_new", "p_new")
+
+
+def test_without_variables_there_are_no_jacobians(compiled):
+    k = compiled(next(f for f in FACTORS if f.name == "so3_Jr"))
+    assert k(np.zeros(3)).tolist() == np.eye(3).tolist()
+    with pytest.raises(AttributeError, match="so3_Jr has no jacobians"):
+        k.jacobians  # noqa: B018
+
+
+# --- shapes, strides, types -------------------------------------------------------------------------------
+
+
+def test_broadcasting(compiled):
+    k = compiled(between)
+    (x, y), given = arguments(between, (3, 4))
+    z = given["z"]
+    made = k.jacobians(x[:, :1], y[0], z=z[0, 0])
+    for i in range(3):
+        for j in range(4):
+            close([a[i, j] for a in made], k.jacobians(x[i, 0], y[0, j], z=z[0, 0]))
+
+
+@pytest.mark.parametrize("shape", [(0,), (3, 0), (0, 2)])
+def test_empty_arrays(compiled, shape):
+    variables, given = arguments(between, shape)
+    k = compiled(between)
+    made = k.jacobians(*variables, **given)
+    assert [a.shape for a in made] == [(*shape, 6), (*shape, 6, 6), (*shape, 6, 6)]
+    assert k.status(*variables, **given).shape == shape
+
+
+def structured(a):
+    """A field of a record: steps that are no multiple of the item's size, and not aligned."""
+    made = np.zeros(len(a), dtype=[("tag", "u1"), ("pose", "f8", 7)])
+    made["pose"] = a
+    return made["pose"]
+
+
+LAYOUTS = {
+    "columns first": np.asfortranarray,
+    "every other": lambda a: np.repeat(a, 2, axis=0)[::2],
+    "backwards": lambda a: a[::-1].copy()[::-1],
+    "numbers backwards": lambda a: a[:, ::-1].copy()[:, ::-1],
+    "wide rows": lambda a: np.hstack([a, a])[:, :7],
+    "strided numbers": lambda a: np.repeat(a, 3, axis=1)[:, ::3],
+    "other byte order": lambda a: a.astype(a.dtype.newbyteorder()),
+    "unaligned": structured,
+    "read-only": lambda a: np.frombuffer(a.tobytes()).reshape(a.shape),
+    "list": lambda a: a.tolist(),
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_any_layout_of_inputs(compiled, layout):
+    k = compiled(between)
+    (x, y), given = arguments(between, (11,))
+    arranged = [LAYOUTS[layout](a) for a in (x, y, given["z"])]
+    close(k.jacobians(*arranged[:2], z=arranged[2]), k.jacobians(x, y, z=given["z"]))
+
+
+def test_inputs_whose_numbers_are_one_number(compiled):
+    k = compiled(between)
+    (x, y), given = arguments(between, (5,))
+    same = np.broadcast_to(0.5, (5, 7))
+    close(k.jacobians(x, same, z=given["z"]), k.jacobians(x, same.copy(), z=given["z"]))
+
+
+@pytest.mark.parametrize(
+    "layout", ["packed", "columns first", "transposed blocks", "backwards", "wide", "record"]
+)
+def test_any_layout_of_outputs(compiled, layout):
+    k = compiled(between)
+    variables, given = arguments(between, (5,))
+    shapes = [(5, 6), (5, 6, 6), (5, 6, 6)]
+    record = np.zeros(5, [("tag", "u1"), ("a", "f8", 6), ("b", "f8", (6, 6)), ("c", "f8", (6, 6))])
+    out = {
+        "packed": tuple(map(np.empty, shapes)),
+        "columns first": tuple(np.empty(s, order="F") for s in shapes),
+        "transposed blocks": tuple(np.swapaxes(np.empty(s), 1, -1) for s in shapes),
+        "backwards": tuple(np.empty(s)[::-1] for s in shapes),
+        "wide": tuple(np.empty((*s[:-1], 12))[..., ::2] for s in shapes),
+        "record": (record["a"], record["b"], record["c"]),
+    }[layout]
+    made = k.jacobians(*variables, **given, out=out)
+    assert all(a is b for a, b in zip(made, out, strict=True))
+    close(out, k.jacobians(*variables, **given))
+
+
+def test_an_output_may_be_an_input(compiled):
+    (R, p), _ = arguments(rotated, (30,))
+    k = compiled(rotated)
+    expected = k(R, p)
+    assert k(R, p, out=p) is p
+    close(p, expected)
+
+
+def test_one_output_of_several_may_be_given(compiled):
+    k = compiled(between)
+    variables, given = arguments(between, (3,))
+    D = np.empty((3, 6, 6))
+    made = k.jacobians(*variables, **given, out=(None, D, None))
+    assert made.res_D_x is D
+    close(made, k.jacobians(*variables, **given))
+
+
+def test_numbers_of_other_types(compiled):
+    k = compiled(rotated)
+    R, p = [0, 0, 0, 1], [1, 2, 3]
+    for made in (k(R, p), k(np.array(R, dtype=np.int64), p), k(np.array(R) != 0, p)):
+        assert made.dtype == np.float64
+        assert made.tolist() == [1, 2, 3]
+    with pytest.raises(TypeError):
+        k(np.array(R) * 1j, p)
+    with pytest.raises(TypeError):
+        k(["a", "b", "c", "d"], p)
+
+
+def test_single_precision(compiled):
+    k = compiled(between)
+    (x, y), given = arguments(between, (9,))
+    single = [a.astype(np.float32) for a in (x, y, given["z"])]
+    made = k.jacobians(*single[:2], z=single[2])
+    exact = k.jacobians(*(a.astype(np.float64) for a in single[:2]), z=single[2].astype(np.float64))
+    kinds = {a.dtype for a in made}
+    assert kinds == {liegen.compile(between, backend="numpy").jacobians(*single[:2], z=single[2]).res.dtype}
+    for a, b in zip(made, exact, strict=True):
+        np.testing.assert_allclose(a, b, rtol=1e-4, atol=1e-4)
+    assert k(x, single[1], z=single[2]).dtype == np.float64
+
+
+def test_wrong_shapes_name_function_and_argument(compiled):
+    k = compiled(between)
+    good = np.zeros((4, 7))
+    with pytest.raises(
+        ValueError, match=r"between_se3_jacobians: .*(operand 1 .*\(7\),\(7\),\(7\)->|argument y)"
+    ):
+        k.jacobians(good, np.zeros((4, 6)), z=good)
+    with pytest.raises(ValueError, match=r"\(4,|\(4\)|broadcast"):
+        k(good, np.zeros((3, 7)), z=good)
+    with pytest.raises(ValueError, match="between_se3"):
+        k(good, 1.0, z=good)
+    with pytest.raises(ValueError, match=r"[Oo]utput|broadcast"):
+        k(good, good, z=good, out=np.empty((4, 5)))
+    with pytest.raises((ValueError, TypeError), match="out"):
+        k.jacobians(good, good, z=good, out=(np.empty((4, 6)),))
+
+
+# --- the call ---------------------------------------------------------------------------------------------
+
+
+def test_names_of_arguments(compiled):
+    k = compiled(between)
+    (x, y), given = arguments(between)
+    z = given["z"]
+    close(k(x=x, y=y, z=z), k(x, y, z=z))
+    close(k(x, z=z, y=y), k(x, y, z=z))
+    usage = r"call it as between_se3\(x, y, z=\)"
+    for positional, named, problem in (
+        ((x, y), {}, "missing z"),
+        ((x,), {"z": z}, "missing y"),
+        ((x, y, z), {}, "missing z"),
+        ((x, y), {"w": z}, "missing z; unknown w"),
+        ((x, y), {"z": z, "w": z}, "unknown w"),
+        ((x, y), {"z": z, "x": x}, "given twice x"),
+        ((x, y, z), {"z": z}, "3 positional arguments"),
+    ):
+        with pytest.raises(TypeError, match=f"between_se3: {problem}; {usage}"):
+            k(*positional, **named)
+
+
+def test_typed_values(compiled):
+    (x, y), given = arguments(between)
+    k = compiled(between)
+    typed = [SE3.from_storage(a) for a in (x, y, given["z"])]
+    close(k.jacobians(*typed[:2], z=typed[2]), k.jacobians(x, y, **given))
+    close(k(typed[0], y, z=given["z"]), k(x, y, **given))
+    with pytest.raises(DefinitionError, match="between_se3: argument 'y' must be SE3, got SO3"):
+        k(typed[0], SO3.from_storage(y[:4]), z=typed[2])
+    body = np.concatenate([x, [1.0, 2, 3]])
+    close(compiled(drift)(drift.declared[0].manifold.from_storage(body), b=body), np.zeros(9))
+
+
+def test_text(compiled):
+    k = compiled(between)
+    assert repr(k).startswith("<compiled between_se3(x, y, *, z, out=None) (7),(7),(7)->(6), ")
+    assert "x: (..., 7) SE3" in k.__doc__
+    assert "res_D_x: (..., 6, 6)" in k.jacobians.__doc__
+    assert "res_D_x" not in k.__doc__
+    assert k.backend in ("c", "numpy")
+    with pytest.raises(DefinitionError, match="needs a @factor or @function, got function"):
+        liegen.compile(lambda x: x)
+    with pytest.raises(DefinitionError, match="backend is 'c' or 'numpy', got 'rust'"):
+        liegen.compile(between, backend="rust")
+
+
+def test_outside_of_the_domain(compiled):
+    k = compiled(pixel)
+    x = np.array([0.0, 0, 0, 1, 0, 0, 0])
+    p = np.array([[0.0, 0, 2], [0, 0, -1], [0, 0, 60], [0, 0, 5]])
+    with np.errstate(all="raise"):
+        made = k.jacobians(x, p, z=np.zeros(2))
+    assert np.isnan(made.res).all(axis=-1).tolist() == [False, True, True, False]
+    assert np.isnan(made.res_D_p).all(axis=(-1, -2)).tolist() == [False, True, True, False]
+    assert not np.isnan(made.res_D_x[[0, 3]]).any()
+    assert k.status(x, p, z=np.zeros(2)).tolist() == [0, 1, 2, 0]
+    assert k.status(x, p[1], z=np.zeros(2)) == 1
+    assert np.isnan(k.jacobians(x, p[1], z=np.zeros(2)).res_D_x).all()
+    assert k.requirements == ("point behind the camera", "point too far away")
+
+
+def test_no_warnings_of_floating_point(compiled):
+    k = compiled(quotient)
+    with np.errstate(all="raise"):
+        for shape in ((), (3,)):
+            b = np.broadcast_to([0.0, 2.0], (*shape, 2))
+            made = k.jacobians(np.ones((*shape, 2)), b=b)
+            assert np.isinf(made.res[..., 0]).all()
+            assert (made.res[..., 1] == 0.5).all()
+
+
+def test_values_that_python_refuses_are_those_of_arrays(compiled):
+    k = compiled(quotient)
+    assert k([1.0, -1.0], b=[0.0, 0.0]).tolist() == [np.inf, -np.inf]
+    assert np.isnan(k([0.0, 1.0], b=[0.0, 1.0])[0])
+
+
+# --- threads ----------------------------------------------------------------------------------------------
+
+
+@needs_compiler
+def test_the_lock_is_released():
+    k = liegen.compile(between, backend="c")
+    n = 400_000
+    x = np.broadcast_to(0.5, (n, 7))  # one number for all: the slowest way in
+    out = np.ones((n, 6))
+    span: list[float] = []
+
+    def run():
+        span.append(time.perf_counter())
+        k(x, x, z=x, out=out)
+        span.append(time.perf_counter())
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    beats: list[float] = []
+    while len(span) < 2:
+        time.sleep(1e-4)
+        beats.append(time.perf_counter())
+    thread.join()
+    # Were the lock held, this thread would stand still from the start of the call to its end.
+    assert sum(span[0] < beat < span[1] for beat in beats) >= 5
+
+
+def test_several_threads_at_once(compiled):
+    k = compiled(rotated)
+    (R, p), _ = arguments(rotated, (50,))
+    expected, made = k(R, p), [None] * 4
+
+    def run(i):
+        for _ in range(20):
+            made[i] = k(SO3.from_storage(R), R3.from_storage(p))
+
+    threads = [threading.Thread(target=run, args=(i,)) for i in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    for m in made:
+        close(m, expected)
