@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -130,3 +132,16 @@ def test_a_function_has_no_terms(backend):
         _ = k.gauss_newton
     with pytest.raises(DefinitionError):
         _ = middle.gauss_newton_kernel
+
+
+@needs_compiler
+def test_the_documentation_runs(capsys):
+    text = (Path(__file__).resolve().parents[2] / "docs" / "gauss_newton.md").read_text(encoding="utf-8")
+    names: dict[str, object] = {}
+    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    for block in blocks:
+        exec(block, names)
+    said = [
+        line.split("# ")[1] for block in blocks for line in block.splitlines() if line.startswith("print")
+    ]
+    assert capsys.readouterr().out.splitlines() == said
