@@ -12,8 +12,8 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
-    "differentiate", "noise", "program", "kernel", "choice", "derive", "define", "decorate", "samples",
-    "library", "modules", "sources", "emit",
+    "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton", "define", "decorate",
+    "samples", "library", "modules", "sources", "emit",
     "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.

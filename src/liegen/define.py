@@ -29,6 +29,7 @@ from liegen.trace import (
 
 if TYPE_CHECKING:
     from liegen.kernel import Kernel
+    from liegen.program import Program
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -77,6 +78,16 @@ class Function(Generic[P, T]):
 
         return derive(self.plain, self.weighting, in_place=self.in_place)
 
+    @cached_property
+    def gauss_newton_kernel(self) -> Kernel:
+        """The derived Gauss-Newton terms. Raises DefinitionError for a ``@function``."""
+        from liegen.gauss_newton import gauss_newton_kernel
+
+        if not self.is_factor:
+            what = "is a @function, without a residual; Gauss-Newton terms are of a @factor"
+            raise DefinitionError(f"{here()}: {self.name} {what}")
+        return gauss_newton_kernel(self.kernel, self.plain, self.weighting)
+
     @property
     def frames(self) -> FrameReport:
         """The frames of arguments, residual (and noise) and Jacobian columns; empty with ``frames=False``."""
@@ -111,9 +122,22 @@ class Function(Generic[P, T]):
 
     def jacobians(self, *args: P.args, **kwargs: P.kwargs) -> dict[str, np.ndarray[Any, Any]]:
         """The outputs and all Jacobians on numbers, by name: ``res`` (..., m), ``res_D_x`` (..., m, k)."""
-        results = self.kernel.jacobians.evaluate(self._stored(self._bound(args, kwargs)))
+        return self._evaluated(self.kernel.jacobians, args, kwargs)
+
+    def gauss_newton(self, *args: P.args, **kwargs: P.kwargs) -> dict[str, np.ndarray[Any, Any]]:
+        """Gauss-Newton terms on numbers, by name, whitened and weighed as the factor is.
+
+        ``cost`` (..., 1), half the squared norm of the residual or half of rho; ``g_x`` (..., k), the
+        gradient of the cost; ``H_x_y`` (..., k, l) for each pair of variables in their order, J_x^T J_y.
+        """
+        return self._evaluated(self.gauss_newton_kernel.value, args, kwargs)
+
+    def _evaluated(
+        self, program: Program, args: tuple[Any, ...], kwargs: Mapping[str, Any]
+    ) -> dict[str, np.ndarray[Any, Any]]:
+        results = program.evaluate(self._stored(self._bound(args, kwargs)))
         arrays: dict[str, np.ndarray[Any, Any]] = {}
-        for port in self.kernel.jacobians.outputs:
+        for port in program.outputs:
             entries = np.stack(np.broadcast_arrays(*results[port.name]), axis=-1).astype(np.float64)
             arrays[port.name] = entries.reshape(*entries.shape[:-1], *port.shape)
         return arrays

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -122,19 +122,34 @@ def lowered(
     weighting: Weighting | None = None,
 ) -> Program:
     """The outputs of a graph, and the given Jacobians, weighed, as a program without any pass."""
-    given = {w.name: symbols(f"{w.name}_", w.size) for w in weights_of(graph, weighting)}
+    given = weight_symbols(graph, weighting)
     scalars: dict[str, Coordinates] = {name: values.scalars[id(node)] for name, node in graph.outputs}
     if weighting:
         ((name, residual),) = scalars.items()
         scalars[name], blocks = weighting.apply(given, residual, blocks)
-    arguments = {**values.inputs, **given}
-    inputs = [(Port(name, (len(coords),)), coords) for name, coords in arguments.items()]
     stored = {name: storage(node.manifold.form, graph.layout) for name, node in graph.outputs}
     outputs = [(Port(name, s.shape), s.write(scalars[name])) for name, s in stored.items()]
     outputs += [
         (Port(f"{name}_D_{variable}", (len(m), len(m[0]))), tuple(x for row in m for x in row))
         for (name, variable), m in blocks.items()
     ]
+    return lowered_outputs(graph, values, given, outputs)
+
+
+def weight_symbols(graph: Graph, weighting: Weighting | None) -> dict[str, Coordinates]:
+    """Fresh SX scalars of the keywords that a weighting adds."""
+    return {w.name: symbols(f"{w.name}_", w.size) for w in weights_of(graph, weighting)}
+
+
+def lowered_outputs(
+    graph: Graph,
+    values: Expressions,
+    given: Mapping[str, Coordinates],
+    outputs: Sequence[tuple[Port, Coordinates]],
+) -> Program:
+    """Expressions in a graph's scalars, and in the keywords ``given``, as a program without any pass."""
+    arguments = {**values.inputs, **given}
+    inputs = [(Port(name, (len(coords),)), coords) for name, coords in arguments.items()]
     domain = [(values.scalars[id(d.condition)][0], d.message) for d in graph.domain]
     return lower(graph.name, inputs, outputs, domain)
 

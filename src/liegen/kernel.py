@@ -33,10 +33,14 @@ class Stored:
 
 @dataclass(frozen=True)
 class Argument(Stored):
-    """A parameter. ``meaning`` describes it where no manifold does."""
+    """A parameter. ``meaning`` describes it where no manifold does.
+
+    ``named``: a call gives it by name also where there are no variables.
+    """
 
     variable: bool
     meaning: str = ""
+    named: bool = False
 
 
 @dataclass(frozen=True)
@@ -94,13 +98,13 @@ class Kernel:
 
     @property
     def positional(self) -> tuple[Argument, ...]:
-        """The arguments without a name in a call: the variables, or all where there are none."""
-        return self.variables or self.arguments
+        """The arguments without a name in a call: the variables; without any, all that are not ``named``."""
+        return self.variables or tuple(a for a in self.arguments if not a.named)
 
     @property
     def keywords(self) -> tuple[Argument, ...]:
         """The arguments that a call names."""
-        return self.given if self.variables else ()
+        return self.given if self.variables else tuple(a for a in self.arguments if a.named)
 
     def jacobian_name(self, output: Output, variable: Argument) -> str:
         """``res_D_x``."""

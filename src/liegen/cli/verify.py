@@ -36,6 +36,8 @@ MEASURED = {
     "differences": "differences",
     "Taylor": "slope",
 }
+#: Those of checks that not every run has.
+ASKED = {"Gauss-Newton": "J^T J"}
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
 #: Skipped cases that are named for a factor.
@@ -56,6 +58,7 @@ LISTED = 6
     " SOURCE and --group of the library and all groups. --samples are those of an angle.")  # fmt: skip
 @click.option("--peers", is_flag=True, help="With --accuracy: the same of GTSAM, SymForce, jaxlie and Sophus,"
     " where they are installed.")  # fmt: skip
+@click.option("--gauss-newton", is_flag=True, help="Also the Gauss-Newton terms of factors.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def verify(
     source: str | None,
@@ -71,6 +74,7 @@ def verify(
     seed: int,
     accuracy: bool,
     peers: bool,
+    gauss_newton: bool,
     as_json: bool,
 ) -> None:
     """Check NumPy and C of SOURCE against an independent reference and against differences."""
@@ -96,6 +100,7 @@ def verify(
             seed=seed,
             progress=(lambda f, done, total: told(f.factor, done, total)) if told else None,
             reload=partial(weighed_by_name, source, groups, convention, noise, loss, mode),
+            gauss_newton=gauss_newton,
         )
     if as_json:
         click.echo(report.to_json(), nl=False)
@@ -106,10 +111,12 @@ def verify(
 
 
 def _print(report: Report, seconds: float) -> None:
+    done = {check.name for f in report.factors for check in f.checks}
+    columns = MEASURED | {name: title for name, title in ASKED.items() if name in done}
     table(
-        ("factor", "checks", *MEASURED.values(), "samples", "skipped"),
-        [_row(f) for f in report.factors],
-        right=range(2, 4 + len(MEASURED)),
+        ("factor", "checks", *columns.values(), "samples", "skipped"),
+        [_row(f, columns) for f in report.factors],
+        right=range(2, 4 + len(columns)),
     )
     for factor in report.factors:
         for line in _remarks(factor):
@@ -142,11 +149,11 @@ def _print_off_unit(factors: Iterable[FactorReport]) -> None:
     )
 
 
-def _row(factor: FactorReport) -> tuple[str, ...]:
+def _row(factor: FactorReport, columns: Iterable[str]) -> tuple[str, ...]:
     done = {c.name: c for c in factor.checks if c.checked}
     good = sum(c.passed for c in done.values())
     verdict = f"{good} passed" if good == len(done) else f"{len(done) - good} of {len(done)} FAILED"
-    figures = [_figure(done[name]) if name in done else "" for name in MEASURED]
+    figures = [_figure(done[name]) if name in done else "" for name in columns]
     kept = max((c.kept for c in done.values()), default=0)
     skipped = max((len(c.skipped) for c in done.values()), default=0)
     return factor.factor, verdict, *figures, str(kept), str(skipped)

@@ -5,3 +5,4 @@ from __future__ import annotations
 from .compiled import Compiled as Compiled
 from .compiled import Indexed as Indexed
 from .compiled import compile as compile
+from .normal_equations import NormalEquations as NormalEquations

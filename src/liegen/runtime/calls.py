@@ -76,7 +76,7 @@ class Call:
             except KeyError:
                 self._refuse(arrays, given)
         else:
-            arrays = self._bound(arrays, given)
+            arrays = self.bound(arrays, given)
         for array in arrays:
             if isinstance(array, Value):
                 arrays = self._plain(arrays)
@@ -87,8 +87,8 @@ class Call:
     def __repr__(self) -> str:
         return f"<compiled {self.name}{signature(self.parameters)}>"
 
-    def _bound(self, arrays: Sequence[Any], given: Mapping[str, Any]) -> tuple[Any, ...]:
-        """The slow way: positional arguments may be named too."""
+    def bound(self, arrays: Sequence[Any], given: Mapping[str, Any]) -> tuple[Any, ...]:
+        """All arguments in the order of the parameters; positional ones may be named too."""
         if len(arrays) > self._positional:
             self._refuse(arrays, given)
         names = [p.name for p in self.parameters]

@@ -6,9 +6,9 @@ import ctypes
 import pickle
 import warnings
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import Any, Literal, cast
 
 from numpy.typing import ArrayLike
@@ -63,6 +63,11 @@ class Indexed(Methods):
     compiled: Compiled
     indices: Indices
 
+    @cached_property
+    def gauss_newton(self) -> Indexed:
+        """The Gauss-Newton terms of each factor, with the same index arrays."""
+        return self.compiled.gauss_newton.indexed(**self.indices.arrays)
+
     def __reduce__(self) -> tuple[Any, ...]:
         return reindexed, (self.compiled, dict(self.indices.arrays))
 
@@ -83,6 +88,17 @@ class Compiled(Methods):
     backend: Backend
     asked: Backend | None
     library: ctypes.CDLL | None
+    terms: Callable[[], Source] | None = None
+
+    @cached_property
+    def gauss_newton(self) -> Compiled:
+        """The Gauss-Newton terms, as a named tuple (cost, g_x, ..., H_x_y, ...); compiled at their first use.
+
+        AttributeError for a ``@function``, which has no residual.
+        """
+        if self.terms is None:
+            raise AttributeError(f"{self.name} has no Gauss-Newton terms: it is no factor with a residual")
+        return assembled(self.terms(), self.asked)
 
     @property
     def requirements(self) -> tuple[str, ...]:
@@ -118,7 +134,9 @@ class Compiled(Methods):
         return hash(self.source)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return restored, (self.name, self.source.digest, zlib.compress(pickle.dumps(self.source)), self.asked)
+        terms = self.terms() if self.terms else None
+        packed = zlib.compress(pickle.dumps((self.source, terms)))
+        return restored, (self.name, self.source.digest, packed, self.asked)
 
 
 @lru_cache(maxsize=256)
@@ -128,15 +146,15 @@ def restored(name: str, digest: str, packed: bytes, asked: Backend | None) -> Co
     Raises ToolError where it was pickled by another version of liegen, or does not compile.
     """
     try:
-        source = pickle.loads(zlib.decompress(packed))
+        source, terms = pickle.loads(zlib.decompress(packed))
         same = source.digest == digest
     except Exception:  # whatever a changed class does
-        source, same = None, False
+        source, terms, same = None, None, False
     if source is None or not same:
         raise ToolError(
             f"{name} was pickled by another version of liegen; call liegen.compile on the factor again"
         )
-    return assembled(source, asked)
+    return assembled(source, asked, (lambda: terms) if terms else None)
 
 
 def reindexed(compiled: Compiled, index: Mapping[str, ArrayLike]) -> Indexed:
@@ -157,16 +175,21 @@ def compile(function: Function[..., Any], *, backend: Backend | None = None) -> 
         raise DefinitionError(f"liegen.compile needs a @factor or @function, got {type(given).__name__}")
     if backend not in (None, "c", "numpy"):
         raise DefinitionError(f"liegen.compile: backend is 'c' or 'numpy', got {backend!r}")
-    return assembled(emitted(function.kernel), backend)
+    return assembled(emitted(function.kernel), backend, _terms_of(function) if function.is_factor else None)
 
 
-def assembled(source: Source, asked: Backend | None) -> Compiled:
+def _terms_of(function: Function[..., Any]) -> Callable[[], Source]:
+    return cache(lambda: emitted(function.gauss_newton_kernel, summed=True))
+
+
+def assembled(source: Source, asked: Backend | None, terms: Callable[[], Source] | None = None) -> Compiled:
     """The methods of a factor on a backend."""
     library = load(source) if asked == "c" or (asked is None and _has_compiler()) else None
     calls = {name: call(source, name, evaluate) for name, evaluate in _evaluators(source, library).items()}
     return Compiled(
         *_first(calls),
         calls=calls, source=source, backend="numpy" if library is None else "c", asked=asked, library=library,
+        terms=terms,
     )  # fmt: skip
 
 

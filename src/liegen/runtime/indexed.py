@@ -21,7 +21,7 @@ from .source import PACKAGE, Source
 Array = NDArray[Any]
 
 
-class _In(ctypes.Structure):
+class Input(ctypes.Structure):
     """``PACKAGE_in`` of the emitted header."""
 
     _fields_ = (
@@ -130,33 +130,46 @@ def _leading(method: Method, port: Port, array: Array, length: int) -> bool:
 def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> Evaluate:
     """A method through the C function of batches; the interpreter's lock is released while it runs."""
     function = _function(library, method)
-    n = indices.length
+    n, given = indices.length, len(method.inputs)
     order = [port.name for port in (*method.inputs, *method.outputs)]
-    places = [order.index(name) if name in order else None for name in method.taken]
+    places = [order.index(name) if name in order else None for name in method.taken[given:]]
 
     def evaluate(*arrays: Any, out: Any = None) -> Any:
         values = [np.asarray(array) for array in arrays]
         final, dtype = number(values), np.dtype(np.float64)
-        inputs = [_cast(method, port, v, dtype) for port, v in zip(method.inputs, values, strict=True)]
-        passed: list[Any] = [
-            _input(method, port, v, indices) for port, v in zip(method.inputs, inputs, strict=True)
-        ]
+        inputs, passed = structures(method, values, indices, dtype)
+        made_here: list[_Out] = []
         results: list[Array] = []
         for port, target in zip(method.outputs, targets(out, len(method.outputs)), strict=True):
             shape = (n, *port.shape)
             made = target if _direct(target, shape, dtype, inputs) else np.empty(shape, dtype)
-            passed.append(_Out(made.ctypes.data, *steps(made, port.shape)))
+            made_here.append(_Out(made.ctypes.data, *steps(made, port.shape)))
             results.append(made)
-        function(n, *(_Out(None, 0, 0) if p is None else passed[p] for p in places), None)
+        wanted = (_Out(None, 0, 0) if p is None else made_here[p - given] for p in places)
+        function(n, *passed, *wanted, None)
         return handed(results, final, out)
 
     return evaluate
 
 
+def structures(
+    method: Method, arrays: Sequence[Any], indices: Indices, dtype: np.dtype[Any]
+) -> tuple[list[Array], list[Any]]:
+    """Arguments as arrays that C can read, and as its structures in the order in which it takes them.
+
+    The structures point into the arrays.
+    """
+    inputs = [
+        _cast(method, port, np.asarray(a), dtype) for port, a in zip(method.inputs, arrays, strict=True)
+    ]
+    made = {p.name: _input(method, p, a, indices) for p, a in zip(method.inputs, inputs, strict=True)}
+    return inputs, [made[name] for name in method.taken[: len(inputs)]]
+
+
 def _function(library: ctypes.CDLL, method: Method) -> Callable[..., int]:
     function = library[f"{PACKAGE}_{method.function}"]
     inputs, total = len(method.inputs), len(method.taken)
-    function.argtypes = [ctypes.c_ssize_t, *[_In] * inputs, *[_Out] * (total - inputs), ctypes.c_void_p]
+    function.argtypes = [ctypes.c_ssize_t, *[Input] * inputs, *[_Out] * (total - inputs), ctypes.c_void_p]
     function.restype = ctypes.c_int
     return function
 
@@ -189,15 +202,15 @@ def steps(array: Array, core: tuple[int, ...]) -> tuple[int, int]:
     return (array.strides[0] // size if array.ndim > count else 0), comp // size
 
 
-def _input(method: Method, port: Port, array: Array, indices: Indices) -> _In:
+def _input(method: Method, port: Port, array: Array, indices: Indices) -> Input:
     index = indices.arrays.get(port.name)
     if index is None:
         each = _leading(method, port, array, indices.length)
         stride, comp = steps(array, port.shape)
-        return _In(array.ctypes.data, stride if each else 0, comp, None)
+        return Input(array.ctypes.data, stride if each else 0, comp, None)
     indices.check(method.title, port.name, array, port.shape)
     stride, comp = steps(array, port.shape)
-    return _In(array.ctypes.data, stride, comp, index.ctypes.data)
+    return Input(array.ctypes.data, stride, comp, index.ctypes.data)
 
 
 def _direct(target: Any, shape: tuple[int, ...], dtype: np.dtype[Any], inputs: Sequence[Array]) -> bool:

@@ -13,6 +13,7 @@ from liegen.emit.floats import conditions_source, floats_source
 from liegen.emit.header import doc_lines, interface_doc
 from liegen.emit.loops import Method, loops_source, methods
 from liegen.emit.numpy_target import camel
+from liegen.emit.sums import sums_source
 from liegen.emit.target import Options
 from liegen.kernel import Kernel
 
@@ -65,8 +66,11 @@ class Source:
         return hash(self.digest)
 
 
-def emitted(kernel: Kernel) -> Source:
-    """Everything that is emitted for a factor. Raises DefinitionError for names that a language refuses."""
+def emitted(kernel: Kernel, *, summed: bool = False) -> Source:
+    """Everything that is emitted for a factor, ``summed``: with sums over factors.
+
+    Raises DefinitionError for names that a language refuses.
+    """
     options = Options(PACKAGE, f"liegen.compile({kernel.name})")
     files = render([kernel], ("c", "numpy"), package=PACKAGE, regenerate=options.regenerate)
     c = {path.removeprefix("c/"): text for path, text in files.items() if path.startswith("c/")}
@@ -89,7 +93,11 @@ def emitted(kernel: Kernel) -> Source:
             "jacobians": f"{camel(kernel.name)}Jacobians",
         },
         requirements=tuple(r.message for r in kernel.value.requirements),
-        c={**c, f"{kernel.name}_loops.c": loops_source(kernel, options)},
+        c={
+            **c,
+            f"{kernel.name}_loops.c": loops_source(kernel, options),
+            **({f"{kernel.name}_sums.c": sums_source(kernel, options)} if summed else {}),
+        },
         numpy={
             path.removeprefix(f"{PACKAGE}/"): text
             for path, text in files.items()

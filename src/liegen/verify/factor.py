@@ -17,6 +17,7 @@ from .draws import AnyFunction, Samples, batch, draw_samples
 from .expected import Expected, compare, expect
 from .gradient import gradient, not_applicable
 from .in_place import in_place
+from .normal_terms import normal_terms
 from .report import Check, FactorReport
 from .taylor import taylor
 from .unit_length import off_unit
@@ -30,15 +31,29 @@ SINGLE = 4
 
 
 def check_factor(
-    function: AnyFunction, place: Workspace, samples: int, seed: int, *, conditioned: bool
+    function: AnyFunction,
+    place: Workspace,
+    samples: int,
+    seed: int,
+    *,
+    conditioned: bool,
+    gauss_newton: bool = False,
 ) -> FactorReport:
-    """Draw ``samples`` samples and run every check. ``conditioned`` as in :func:`expect`."""
-    checks = _checks(function, place, samples, seed, conditioned=conditioned)
+    """Draw ``samples`` samples and run every check.
+
+    ``conditioned`` as in :func:`expect`; ``gauss_newton``: of the Gauss-Newton terms too.
+    """
+    checks = _checks(function, place, samples, seed, conditioned, gauss_newton)
     return FactorReport(function.name, checks, off_unit(function, seed))
 
 
 def _checks(
-    function: AnyFunction, place: Workspace, samples: int, seed: int, *, conditioned: bool
+    function: AnyFunction,
+    place: Workspace,
+    samples: int,
+    seed: int,
+    conditioned: bool,
+    gauss_newton: bool,
 ) -> tuple[Check, ...]:
     drawn = draw_samples(function, samples, seed)
     if not drawn.inside:
@@ -47,6 +62,7 @@ def _checks(
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
     weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
+    terms = [normal_terms(function, place, drawn, expected)] if gauss_newton else []
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
@@ -58,6 +74,7 @@ def _checks(
             agreement(expected, results | singles),
             domain(function, drawn, computed, seed),
             *(not_applicable(name, weighting.mode.name) for name in ("differences", "Taylor")),
+            *terms,
             _compiled(place),
         )
     return (
@@ -65,6 +82,7 @@ def _checks(
         agreement(expected, results | singles),
         domain(function, drawn, computed, seed),
         *(_slopes(function.graph, drawn, expected, computed, results) if function.kernel.variables else ()),
+        *terms,
         *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
         _compiled(place),
     )

@@ -6,7 +6,7 @@ import multiprocessing
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from typing import TypeGuard
+from typing import NamedTuple, TypeGuard
 
 from liegen.define import Function
 from liegen.modules import every_function
@@ -50,12 +50,13 @@ def verify(
     progress: Progress | None = None,
     reload: Reload | None = None,
     workers: int | None = None,
+    gauss_newton: bool = False,
 ) -> Report:
     """Run every check of every factor.
 
     ``samples`` are drawn for each factor. ``reload`` lets other processes load factors that are not the
     library's; without it those are verified in this process. ``workers`` is their number, by default one for
-    each core.
+    each core. ``gauss_newton``: the Gauss-Newton terms of factors too.
     Raises ToolError when a compiler is there but refuses the generated C.
     """
     known = everything()
@@ -63,8 +64,12 @@ def verify(
     source: Reload | None = everything if builtin and reload is None else reload
     strict = {f.name for f in functions if known.get(f.name) is f}
     count = min(workers or cores(), len(functions) // WORTHWHILE) if source else 1
-    with workspace([f.kernel for f in functions]) as place:
-        jobs = [(f.name, samples, seed, f.name not in strict) for f in functions]
+    kernels = [f.kernel for f in functions]
+    kernels += [f.gauss_newton_kernel for f in functions if gauss_newton and f.is_factor]
+    with workspace(kernels) as place:
+        jobs = [
+            Job(f.name, samples, seed, f.name not in strict, gauss_newton and f.is_factor) for f in functions
+        ]
         found = (
             _parallel(source, place, jobs, count, progress)
             if source and count > 1
@@ -74,15 +79,29 @@ def verify(
     return Report(tuple(found), samples, seed, compiler)
 
 
-Job = tuple[str, int, int, bool]
+class Job(NamedTuple):
+    """The arguments of :func:`check_factor` for the factor of a name."""
+
+    name: str
+    samples: int
+    seed: int
+    conditioned: bool
+    gauss_newton: bool
+
+    def report(self, function: AnyFunction, place: Workspace) -> FactorReport:
+        """All checks."""
+        return check_factor(
+            function, place, self.samples, self.seed,
+            conditioned=self.conditioned, gauss_newton=self.gauss_newton,
+        )  # fmt: skip
 
 
 def _serial(
     functions: Sequence[AnyFunction], place: Workspace, jobs: Sequence[Job], progress: Progress | None
 ) -> list[FactorReport]:
     reports: list[FactorReport] = []
-    for function, (_, samples, seed, conditioned) in zip(functions, jobs, strict=True):
-        reports.append(check_factor(function, place, samples, seed, conditioned=conditioned))
+    for function, job in zip(functions, jobs, strict=True):
+        reports.append(job.report(function, place))
         if progress:
             progress(reports[-1], len(reports), len(jobs))
     return reports
@@ -94,19 +113,18 @@ def _parallel(
     """Worker processes start afresh, so they hold no locks or threads of this one."""
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(count, mp_context=context) as pool:
-        futures = {pool.submit(_work, source, place, job): job[0] for job in jobs}
+        futures = {pool.submit(_work, source, place, job): job.name for job in jobs}
         reports: dict[str, FactorReport] = {}
         for future in as_completed(futures):
             report = future.result()
             reports[futures[future]] = report
             if progress:
                 progress(report, len(reports), len(jobs))
-    return [reports[name] for name, *_ in jobs]
+    return [reports[job.name] for job in jobs]
 
 
 def _work(source: Reload, place: Workspace, job: Job) -> FactorReport:
-    name, samples, seed, conditioned = job
-    return check_factor(source()[name], place, samples, seed, conditioned=conditioned)
+    return job.report(source()[job.name], place)
 
 
 def cores() -> int:
