@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import importlib
+import json
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
 from liegen.accuracy.peers import measure_peers, measured
 from liegen.accuracy.peers.contract import Operation, Peer, quaternion, rotation_matrix
 from liegen.accuracy.points import COLUMNS
+from liegen.cli import app
 from liegen.verify.run import everything
 
 FUNCTIONS = [everything()[n] for n in ("between_so3", "so3_log", "so3_exp", "se2_log", "between_se3")]
@@ -79,3 +82,26 @@ def test_quaternions_of_matrices():
         np.testing.assert_allclose(R, Rotation.from_quat(q).as_matrix(), atol=1e-15)
         found = quaternion(R)
         assert min(np.abs(found - q).max(), np.abs(found + q).max()) < 1e-15
+
+
+def test_the_command_prints_them_beside_its_own(monkeypatch):
+    monkeypatch.setattr(measured, "LOADERS", {"textbook": peer("textbook", acos_log), "absent": absent})
+    words = ["verify", "--accuracy", "--peers", "-f", "so3_log", "--chart", "gtsam", "--samples", "2"]
+    done = CliRunner().invoke(app, words)
+    # the bound is liegen's own
+    assert done.exit_code == 0, done.output
+    _, own, other = next(
+        lines for lines in pairwise3(done.output.splitlines()) if lines[0].startswith("function (chart)")
+    )
+    assert own.split()[:3] == ["so3_log", "out", "liegen"]
+    assert other.split()[0] == "textbook"
+    assert "!" in other
+    assert "!" not in own
+    assert "absent: missing (No module named" in done.output
+    content = json.loads(CliRunner().invoke(app, [*words, "--json"]).output)["peers"]
+    assert {f["library"] for f in content["figures"]} == {"liegen", "textbook"}
+    assert [m["name"] for m in content["missing"]] == ["absent"]
+
+
+def pairwise3(lines):
+    return zip(lines, lines[1:], lines[2:], strict=False)
