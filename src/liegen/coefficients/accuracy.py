@@ -130,10 +130,9 @@ def _literal_cells(x: Literal) -> tuple[str, ...]:
 
 
 def _plane_cells(x: planes.Worst) -> tuple[str, ...]:
-    return (
-        x.function, f"[0, {round(x.high / np.pi)} pi]".replace("1 pi", "pi"), f"{x.bound:g}", f"{x.worst:.2f}",
-        f"{x.lam:.6g}", f"{x.theta:.6g}", f"{x.written:.1g}",
-    )  # fmt: skip
+    interval = "[0, pi]" if x.high < 4 else "[0, 2 pi]"
+    place = f"{x.lam:.6g}", f"{x.theta:.6g}"
+    return x.function, interval, f"{x.bound:g}", f"{x.worst:.2f}", *place, f"{x.written:.1g}"
 
 
 def report(count: int) -> tuple[str, bool]:

@@ -1,4 +1,4 @@
-"""Errors of the similarity groups' coefficients over both variables, beside the formulas as they are written."""
+"""Errors of the similarity groups' coefficients over both variables, beside the formulas as written."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ PLANES = (
 
 @dataclass(frozen=True)
 class Worst:
-    """The worst of one function, in units of 2^-52 times the value at theta = 0; ``written``: as the formula stands."""
+    """The worst of a function in units of 2^-52 times the value at theta = 0, ``written`` of its formula."""
 
     function: str
     high: float
@@ -72,7 +72,7 @@ class Worst:
 
 
 def grid(high: float, count: int) -> tuple[Array, Array]:
-    """Pairs (lambda, theta): spread evenly, in the logarithm, tiny, at the switches; the same in every run."""
+    """Pairs (lambda, theta), the same each time: spread evenly, in the logarithm, tiny, at the switches."""
     few = count // 4
     size = 10.0 ** spread(-17.0, 0.0, few)
     signs = np.where(np.arange(few) % 2, 1.0, -1.0)
@@ -103,12 +103,12 @@ def measure(plane: Plane, count: int) -> tuple[Worst, ...]:
             for k, e in enumerate(exact):
                 for j, values in enumerate((ours, naive)):
                     units[j, k, i] = _units(float(values[k][i]), e, limits[plane.scales[k]])
-    at = units[0].argmax(axis=1)  # a NaN counts as the largest
-    return tuple(
-        Worst(name, plane.high, plane.bounds[k], *(float(x) for x in (units[0, k, i], lam[i], theta[i])),
-              float(np.nanmax(units[1, k])))
-        for k, (name, i) in enumerate(zip(plane.names, at, strict=True))
-    )  # fmt: skip
+    found: list[Worst] = []
+    for k, name in enumerate(plane.names):
+        i = int(units[0, k].argmax())  # a NaN counts as the largest
+        worst, written = float(units[0, k, i]), float(np.nanmax(units[1, k]))
+        found.append(Worst(name, plane.high, plane.bounds[k], worst, float(lam[i]), float(theta[i]), written))
+    return tuple(found)
 
 
 def _units(value: float, exact: Any, scale: Any) -> float:
