@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from liegen.layouts import OWN
 from liegen.manifolds import Manifold, Value
 from liegen.samples import Case, Draw, negated
 from liegen.trace import Graph
@@ -179,7 +178,7 @@ def _in_chart(graph: Graph, values: Values) -> Values:
         x, d = node.operands
         if x in names and d in names:
             with mp.workdps(reference.DIGITS):
-                at = load(x.manifold, values[names[x]], OWN)
+                at = load(x.manifold, values[names[x]])
                 own = tuple(mp.mpf(c) for c in values[names[d]])
                 moved = space_in(x.manifold, None).retract(at, own, PRINCIPAL)
                 coords = space_in(x.manifold, preset).local(at, moved, PRINCIPAL)

@@ -7,6 +7,7 @@ costs nothing. So the zero and identity blocks of a Jacobian never reach the gen
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise
 from typing import Protocol
@@ -196,13 +197,29 @@ def multiply_cost(a: Matrix, b: Matrix) -> int:
     return sum([m * n for m, n in zip(in_columns, in_rows, strict=True)])
 
 
+@dataclass(frozen=True)
+class Sign:
+    """The factor -I of ``size`` rows."""
+
+    size: int
+
+    @property
+    def parts(self) -> Chain:
+        """Its matrix."""
+        return (negative(eye(self.size)),)
+
+
 def plain(chain: Chain) -> Numbers:
-    """The chain in numbers; a factor -I becomes the sign of the next one."""
+    """The chain in numbers; a ``Sign`` becomes the sign of the next factor."""
     flat: list[Matrix] = []
-    for factor in chain:
-        for matrix in (factor,) if isinstance(factor, tuple) else plain(factor.parts):
-            sign = bool(flat) and is_sign(flat[-1])
-            flat[-1:] = [negative(matrix)] if sign else [*flat[-1:], matrix]
+    signed = False
+    for k, factor in enumerate(chain):
+        if isinstance(factor, Sign) and k + 1 < len(chain):
+            signed = not signed
+            continue
+        first, *others = (factor,) if isinstance(factor, tuple) else plain(factor.parts)
+        flat += [negative(first) if signed else first, *others]
+        signed = False
     return tuple(flat)
 
 
@@ -213,22 +230,17 @@ def negative(a: Matrix) -> Matrix:
 
 def negated(chain: Chain) -> Chain:
     """A chain whose product is the negative."""
-    return (negative(eye(len(plain(chain[:1])[0]))), *chain)
+    first = chain[0]
+    if isinstance(first, tuple):
+        return (negative(first), *chain[1:])
+    return (Sign(len(plain((first,))[0])), *chain)
 
 
 def is_identity(a: Matrix | Factor) -> bool:
     """Whether a factor is I, as structure."""
-    return isinstance(a, tuple) and _is_structure(a) and a == eye(len(a))
-
-
-def is_sign(a: Matrix | Factor) -> bool:
-    """Whether a factor is -I, as structure."""
-    return isinstance(a, tuple) and _is_structure(a) and a == negative(eye(len(a)))
-
-
-def _is_structure(a: Matrix) -> bool:
-    """Whether there are entries (conditions have empty blocks), and all of them are structural."""
-    return bool(a) and all(is_structural(x) for row in a for x in row)
+    if not isinstance(a, tuple) or not all(is_structural(x) for row in a for x in row):
+        return False
+    return bool(a) and a == eye(len(a))
 
 
 def product_from_left(chain: Chain) -> Matrix:

@@ -18,7 +18,7 @@ from itertools import accumulate, groupby
 
 from liegen.algebra import Scalar
 from liegen.algebra.factors import Adjoint, Passing, Turn, Word
-from liegen.algebra.linear import Chain, Factor, Matrix, eye, is_identity, is_sign, is_structural, plain
+from liegen.algebra.linear import Chain, Factor, Matrix, Sign, eye, is_identity, is_structural, plain
 
 from .elements import Elements, Key, key
 
@@ -39,7 +39,7 @@ def _adjoints(chain: Chain, elements: Elements) -> Chain:
     """Rule 1 for neighbouring adjoints; a sign between them goes before them, an identity nowhere."""
     signed: list[Matrix | Factor] = []
     for factor in (f for f in chain if not is_identity(f)):
-        behind = bool(signed) and isinstance(signed[-1], Adjoint) and is_sign(factor)
+        behind = bool(signed) and isinstance(signed[-1], Adjoint) and isinstance(factor, Sign)
         signed = [*signed[:-1], factor, signed[-1]] if behind else [*signed, factor]
     found: list[Matrix | Factor] = []
     for group, run in groupby(signed, key=lambda f: f.group if isinstance(f, Adjoint) else ""):
@@ -69,6 +69,8 @@ def _followed(before: Chain, turn: Turn, elements: Elements) -> Chain:
 
 def _exchanged(factor: Matrix | Factor, turn: Turn) -> tuple[Turn, Chain] | None:
     """Rotations that stand before a factor instead of after it, and what the factor is then."""
+    if isinstance(factor, Sign):
+        return turn, (factor,)
     if isinstance(factor, Passing):
         same = factor.taken.sizes == turn.sizes and _names(factor.taken) == _names(turn)
         return (factor.given, factor.moved) if same else None

@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from liegen.layouts import OWN, Stored
-
 from . import cameras, groups, tangent, vectors, weights
 from .calls import Call, Rule
 from .charts import space_in
@@ -17,6 +15,7 @@ from .matrix import Element, Vector, mp
 
 if TYPE_CHECKING:
     from liegen.charts import Preset
+    from liegen.layouts import Stored
     from liegen.manifolds import Node, Value
     from liegen.trace import Graph
 
@@ -102,7 +101,7 @@ def run(
 def _value(node: Node, operands: Sequence[Element], branch: Branch) -> Element:
     operation: Any = node.operation
     if operation.name == "constant":
-        return load(operation.result, operation.coords, OWN)
+        return load(operation.result, operation.coords)
     return OPERATIONS[operation.name](Call(operation, node.operands, operands, branch))
 
 
@@ -127,11 +126,11 @@ def difference(manifold: type[Value], a: Element, b: Element, chart: Preset | No
 def from_coords(manifold: type[Value], coords: Sequence[float]) -> Element:
     """The element that floats in liegen's own storage stand for."""
     with mp.workdps(DIGITS):
-        return load(manifold, coords, OWN)
+        return load(manifold, coords)
 
 
 def to_coords(
-    manifold: type[Value], element: Element, like: Sequence[float] | None = None, layout: Stored = OWN
+    manifold: type[Value], element: Element, like: Sequence[float] | None = None, layout: Stored | None = None
 ) -> tuple[float, ...]:
     """Storage rounded to doubles; of q and -q the one nearer to ``like``, or with w >= 0."""
     with mp.workdps(DIGITS):
@@ -143,7 +142,7 @@ def retract(
     coords: Sequence[float],
     d: Sequence[float],
     chart: Preset | None = None,
-    layout: Stored = OWN,
+    layout: Stored | None = None,
 ) -> tuple[float, ...]:
     """``coords`` moved by the tangent vector ``d``, rounded to doubles; a quaternion keeps its side."""
     with mp.workdps(DIGITS):
@@ -157,7 +156,7 @@ def local(
     a: Sequence[float],
     b: Sequence[float],
     chart: Preset | None = None,
-    layout: Stored = OWN,
+    layout: Stored | None = None,
 ) -> tuple[float, ...]:
     """The tangent vector at ``a`` that leads to ``b``, rounded to doubles."""
     with mp.workdps(DIGITS):

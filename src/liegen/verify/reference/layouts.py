@@ -22,14 +22,17 @@ _KINDS = {
 }  # fmt: skip
 
 
-def load(manifold: type[Value], coords: Sequence[float], stored: Stored) -> Element:
+def load(manifold: type[Value], coords: Sequence[float], stored: Stored | None = None) -> Element:
     """The element that stored floats stand for, at the working precision; nothing is rounded."""
     numbers = tuple(mp.mpf(float(c)) for c in coords)
     return space_of(manifold).load(own_numbers(manifold.form, numbers, stored))
 
 
 def store(
-    manifold: type[Value], element: Element, stored: Stored, like: Sequence[float] | None = None
+    manifold: type[Value],
+    element: Element,
+    stored: Stored | None = None,
+    like: Sequence[float] | None = None,
 ) -> Vector:
     """The stored numbers of an element; of q and -q those nearer to ``like``, or with w >= 0."""
     form = manifold.form
@@ -38,8 +41,10 @@ def store(
     return stored_numbers(form, own, stored)
 
 
-def own_numbers(form: ManifoldForm, x: Vector, stored: Stored) -> Vector:
+def own_numbers(form: ManifoldForm, x: Vector, stored: Stored | None) -> Vector:
     """The manifold's own numbers."""
+    if stored is None:
+        return x
     if form.parts:
         pieces: list[Number] = []
         for part in form.parts:
@@ -56,8 +61,10 @@ def own_numbers(form: ManifoldForm, x: Vector, stored: Stored) -> Vector:
     return (*_rotation(q, n, layout), *rest)
 
 
-def stored_numbers(form: ManifoldForm, x: Vector, stored: Stored) -> Vector:
+def stored_numbers(form: ManifoldForm, x: Vector, stored: Stored | None) -> Vector:
     """The other way round."""
+    if stored is None:
+        return x
     if form.parts:
         pieces: list[Number] = []
         for part in form.parts:
