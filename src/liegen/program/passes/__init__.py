@@ -24,7 +24,7 @@ from .subexpressions import cse
 Pass = Callable[[Program], Program]
 
 #: Run in turn, again and again until nothing changes.
-PASSES: tuple[Pass, ...] = (cse, fold, terms, signs, factor, reciprocals)
+PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
 #: Run once at the end.
 FINAL: tuple[Pass, ...] = (dead, contract, schedule)
 #: Rounds of ``PASSES`` at most.
