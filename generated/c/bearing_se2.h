@@ -11,6 +11,11 @@
  *   res_D_x = -((J a)^T / |a|^2) [I, J a]
  *   res_D_y = ((J a)^T / |a|^2) R(x)^T R(y) [I, 0]
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *   res_D_y: columns in the body frame of y
+ *
  * Conventions:
  *   SE2: stored (cos, sin, x, y); tangent: x [m], y [m], angle [rad]; x.retract(d) = x exp(d)
  *   SO2: stored (cos, sin); tangent: angle [rad]; x.retract(d) = x exp(d)
@@ -31,6 +36,8 @@
  */
 #ifndef LIEGEN_FACTORS_BEARING_SE2_H
 #define LIEGEN_FACTORS_BEARING_SE2_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -71,6 +78,17 @@ int liegen_factors_bearing_se2(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_bearing_se2_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

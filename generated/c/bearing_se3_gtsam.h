@@ -12,6 +12,11 @@
  *   res_D_x = -D1[local](b, z) (B(b) / |a|) [[a]x, -I]
  *   res_D_y = -D1[local](b, z) (B(b) / |a|) R(x)^T R(y) [0, I]
  *
+ * Frames:
+ *   res: tangent vector in the body frame of x, in the tangent basis at the prediction; noise in that basis
+ *   res_D_x: columns in the body frame of x
+ *   res_D_y: columns in the body frame of y
+ *
  * Conventions:
  *   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
  *       x.retract(d) = x exp(d)
@@ -25,7 +30,7 @@
  *   res_D_x: 2 x 6, derivative of res by the tangent of x
  *   res_D_y: 2 x 6, derivative of res by the tangent of y
  *
- * Operations: 139 (residual only), 317 (with Jacobians)
+ * Operations: 137 (residual only), 316 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -33,6 +38,8 @@
  */
 #ifndef LIEGEN_FACTORS_BEARING_SE3_GTSAM_H
 #define LIEGEN_FACTORS_BEARING_SE3_GTSAM_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -73,6 +80,17 @@ int liegen_factors_bearing_se3_gtsam(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_bearing_se3_gtsam_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -12,6 +12,11 @@
  *   res_D_x = D2[local](z, b) (B(b) / |a|) [[a]x, -I]
  *   res_D_y = D2[local](z, b) (B(b) / |a|) R(x)^T
  *
+ * Frames:
+ *   res: tangent vector in the frame of z, in the tangent basis at z; noise in that basis
+ *   res_D_x: columns in the body frame of x
+ *   res_D_y: columns in the frame of y
+ *
  * Conventions:
  *   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
  *       x.retract(d) = x exp(d)
@@ -26,7 +31,7 @@
  *   res_D_x: 2 x 6, derivative of res by the tangent of x
  *   res_D_y: 2 x 3, derivative of res by the tangent of y
  *
- * Operations: 139 (residual only), 326 (with Jacobians)
+ * Operations: 138 (residual only), 324 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -34,6 +39,8 @@
  */
 #ifndef LIEGEN_FACTORS_BEARING_SE3_R3_H
 #define LIEGEN_FACTORS_BEARING_SE3_R3_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -74,6 +81,17 @@ int liegen_factors_bearing_se3_r3(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_bearing_se3_r3_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

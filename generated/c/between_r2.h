@@ -10,6 +10,11 @@
  *   res_D_x = -I
  *   res_D_y = I
  *
+ * Frames:
+ *   res: vector in the frame of z; noise in the frame of z
+ *   res_D_x: columns in the frame of x
+ *   res_D_y: columns in the frame of y
+ *
  * Conventions:
  *   R2: stored as it is; tangent: the same; x.retract(d) = x + d
  *
@@ -29,6 +34,8 @@
  */
 #ifndef LIEGEN_FACTORS_BETWEEN_R2_H
 #define LIEGEN_FACTORS_BETWEEN_R2_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -69,6 +76,17 @@ int liegen_factors_between_r2(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_between_r2_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

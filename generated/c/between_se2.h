@@ -11,6 +11,11 @@
  *   res_D_x = -Jr^-1(res) Ad(a^-1)
  *   res_D_y = Jr^-1(res)
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *   res_D_y: columns in the body frame of y
+ *
  * Conventions:
  *   SE2: stored (cos, sin, x, y); tangent: x [m], y [m], angle [rad]; x.retract(d) = x exp(d)
  *
@@ -22,7 +27,7 @@
  *   res_D_x: 3 x 3, derivative of res by the tangent of x
  *   res_D_y: 3 x 3, derivative of res by the tangent of y
  *
- * Operations: 53 (residual only), 76 (with Jacobians)
+ * Operations: 53 (residual only), 70 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -30,6 +35,8 @@
  */
 #ifndef LIEGEN_FACTORS_BETWEEN_SE2_H
 #define LIEGEN_FACTORS_BETWEEN_SE2_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -70,6 +77,17 @@ int liegen_factors_between_se2(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_between_se2_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

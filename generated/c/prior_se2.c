@@ -9,6 +9,10 @@
  * Jacobians:
  *   res_D_x = Jr^-1(res)
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *
  * Conventions:
  *   SE2: stored (cos, sin, x, y); tangent: x [m], y [m], angle [rad]; x.retract(d) = x exp(d)
  *

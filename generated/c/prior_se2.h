@@ -9,6 +9,10 @@
  * Jacobians:
  *   res_D_x = Jr^-1(res)
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *
  * Conventions:
  *   SE2: stored (cos, sin, x, y); tangent: x [m], y [m], angle [rad]; x.retract(d) = x exp(d)
  *
@@ -26,6 +30,8 @@
  */
 #ifndef LIEGEN_FACTORS_PRIOR_SE2_H
 #define LIEGEN_FACTORS_PRIOR_SE2_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -61,6 +67,15 @@ int liegen_factors_prior_se2(
     const double *LIEGEN_FACTORS_RESTRICT z,
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_prior_se2_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,10 @@
  * Jacobians:
  *   res_D_x = Jr^-1(res)
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *
  * Conventions:
  *   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
  *       x.retract(d) = x exp(d)
@@ -19,7 +23,7 @@
  *   res: 6, R6 (v0, v1, v2, v3, v4, v5)
  *   res_D_x: 6 x 6, derivative of res by the tangent of x
  *
- * Operations: 151 (residual only), 218 (with Jacobians)
+ * Operations: 150 (residual only), 217 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -27,6 +31,8 @@
  */
 #ifndef LIEGEN_FACTORS_PRIOR_SE3_H
 #define LIEGEN_FACTORS_PRIOR_SE3_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -62,6 +68,15 @@ int liegen_factors_prior_se3(
     const double *LIEGEN_FACTORS_RESTRICT z,
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_prior_se3_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,10 @@
  * Jacobians:
  *   res_D_x = I
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *
  * Conventions:
  *   SO2: stored (cos, sin); tangent: angle [rad]; x.retract(d) = x exp(d)
  *

@@ -9,6 +9,10 @@
  * Jacobians:
  *   res_D_x = Jr^-1(res)
  *
+ * Frames:
+ *   res: tangent vector in the body frame of z; noise in the body frame of z
+ *   res_D_x: columns in the body frame of x
+ *
  * Conventions:
  *   SO3: stored unit quaternion (x, y, z, w); tangent: rotation vector [rad]; x.retract(d) = x exp(d)
  *

@@ -18,6 +18,11 @@
  *   res_D_x = D2[uncalibrate](K, c) D2[distort](K, b) b_D_x
  *   res_D_p = D2[uncalibrate](K, c) D2[distort](K, b) b_D_p
  *
+ * Frames:
+ *   res: vector in the frame of z; noise in the frame of z
+ *   res_D_x: columns in the body frame of x
+ *   res_D_p: columns in the frame of p
+ *
  * Conventions:
  *   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
  *       x.retract(d) = x exp(d)
@@ -37,7 +42,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 77 (residual only), 179 (with Jacobians)
+ * Operations: 75 (residual only), 173 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -82,40 +87,39 @@ int liegen_factors_projection_cal3_ds2_res(
     const double z_x = z[0];
     const double z_y = z[1];
     const double t0 = x_qz * 2.0;
-    const double t1 = x_qy * 2.0;
+    const double t1 = 2.0 * x_qy;
     const double t2 = x_qx * 2.0;
     const double t3 = x_qx * t2;
-    const double t4 = x_qy * t1;
-    const double t5 = x_qw * t2;
-    const double t6 = x_qy * t0;
+    const double t4 = x_qw * t2;
+    const double t5 = x_y - p_y;
+    const double t6 = t0 * x_qy;
     const double t7 = x_qw * t1;
     const double t8 = x_qx * t0;
-    const double t9 = p_y - x_y;
-    const double t10 = p_x - x_x;
-    const double t11 = t10 * (t8 + t7) + t9 * (t6 - t5);
-    const double t12 = p_z - x_z;
-    const double t13 = t11 + t12 * (1.0 - (t4 + t3));
-    const int status = ((0.0 < t13) ? 0 : 1);
+    const double t9 = 1.0 - x_qy * t1;
+    const double t10 = x_x - p_x;
+    const double t11 = x_z - p_z;
+    const double t12 = t11 * (t9 - t3) + (t10 * (t8 + t7) + t5 * (t6 - t4));
+    const int status = ((t12 < 0.0) ? 0 : 1);
     if (status) {
         liegen_factors_projection_cal3_ds2_fill(res, 2);
         return status;
     }
-    const double t14 = x_qw * t0;
-    const double t15 = x_qx * t1;
-    const double t16 = x_qz * t0;
-    const double t17 = t10 * (t15 - t14) + t9 * (1.0 - (t16 + t3));
-    const double t18 = (1.0 - (t4 + t16)) * t10 + (t15 + t14) * t9;
-    const double t19 = (t17 + t12 * (t6 + t5)) / t13;
-    const double t20 = (t18 + (t8 - t7) * t12) / t13;
+    const double t13 = t0 * x_qw;
+    const double t14 = x_qx * t1;
+    const double t15 = x_qz * t0;
+    const double t16 = t10 * (t14 - t13) + t5 * (1.0 - t15 - t3);
+    const double t17 = t11 * (t8 - t7) + (t10 * (t9 - t15) + t5 * (t14 + t13));
+    const double t18 = (t11 * (t6 + t4) + t16) / t12;
+    const double t19 = t17 / t12;
+    const double t20 = t18 * t18;
     const double t21 = t19 * t19;
-    const double t22 = t20 * t20;
-    const double t23 = t22 + t21;
-    const double t24 = 1.0 + t23 * (K_k1 + K_k2 * t23);
-    const double t25 = t20 * t19;
-    const double t26 = t20 * t24 + 2.0 * (K_p1 * t25) + K_p2 * (t23 + 2.0 * t22);
-    const double t27 = t19 * t24 + 2.0 * (K_p2 * t25) + K_p1 * (t23 + 2.0 * t21);
-    res[0] = K_u0 + (K_fx * t26 + K_s * t27) - z_x;
-    res[1] = K_v0 + K_fy * t27 - z_y;
+    const double t22 = t21 + t20;
+    const double t23 = 1.0 + t22 * (K_k1 + t22 * K_k2);
+    const double t24 = 2.0 * (t19 * t18);
+    const double t25 = K_p1 * (t22 + 2.0 * t20) + (t18 * t23 + t24 * K_p2);
+    const double t26 = K_fx * (K_p2 * (t22 + 2.0 * t21) + (t19 * t23 + K_p1 * t24));
+    res[0] = K_s * t25 + (t26 + (K_u0 - z_x));
+    res[1] = t25 * K_fy + (K_v0 - z_y);
     return 0;
 }
 
@@ -151,96 +155,98 @@ int liegen_factors_projection_cal3_ds2(
     const double K_p2 = K[8];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
-    const double t3 = p_x - x_x;
-    const double t4 = p_y - x_y;
-    const double t5 = x_qx * t2;
-    const double t6 = x_qw * t0;
-    const double t7 = p_z - x_z;
-    const double t8 = t5 + t6;
-    const double t9 = x_qy * t2;
-    const double t10 = x_qx * 2.0;
-    const double t11 = x_qw * t10;
-    const double t12 = t9 - t11;
-    const double t13 = x_qx * t10;
-    const double t14 = 1.0 - (t1 + t13);
-    const double t15 = t3 * t8 + t4 * t12 + t7 * t14;
-    const int status = ((0.0 < t15) ? 0 : 1);
+    const double t0 = x_x - p_x;
+    const double t1 = x_qz * 2.0;
+    const double t2 = x_qx * t1;
+    const double t3 = 2.0 * x_qy;
+    const double t4 = x_qw * t3;
+    const double t5 = t2 + t4;
+    const double t6 = x_y - p_y;
+    const double t7 = t1 * x_qy;
+    const double t8 = x_qx * 2.0;
+    const double t9 = x_qw * t8;
+    const double t10 = t7 - t9;
+    const double t11 = x_z - p_z;
+    const double t12 = 1.0 - x_qy * t3;
+    const double t13 = x_qx * t8;
+    const double t14 = t12 - t13;
+    const double t15 = t11 * t14 + (t0 * t5 + t6 * t10);
+    const int status = ((t15 < 0.0) ? 0 : 1);
     if (status) {
         liegen_factors_projection_cal3_ds2_fill(res, 2);
         liegen_factors_projection_cal3_ds2_fill(res_D_x, 12);
         liegen_factors_projection_cal3_ds2_fill(res_D_p, 6);
         return status;
     }
-    const double t16 = x_qz * t2;
-    const double t17 = 1.0 - (t1 + t16);
-    const double t18 = x_qx * t0;
-    const double t19 = x_qw * t2;
+    const double t16 = x_qz * t1;
+    const double t17 = t12 - t16;
+    const double t18 = x_qx * t3;
+    const double t19 = t1 * x_qw;
     const double t20 = t18 + t19;
-    const double t21 = t5 - t6;
-    const double t22 = t17 * t3 + t20 * t4 + t21 * t7;
+    const double t21 = t2 - t4;
+    const double t22 = t11 * t21 + (t0 * t17 + t6 * t20);
     const double t23 = 1.0 / t15;
     const double t24 = t22 * t23;
     const double t25 = t24 * t24;
     const double t26 = t18 - t19;
-    const double t27 = 1.0 - (t16 + t13);
-    const double t28 = t9 + t11;
-    const double t29 = t3 * t26 + t4 * t27 + t7 * t28;
+    const double t27 = 1.0 - t16 - t13;
+    const double t28 = t7 + t9;
+    const double t29 = t11 * t28 + (t0 * t26 + t6 * t27);
     const double t30 = t23 * t29;
     const double t31 = t30 * t30;
     const double t32 = t25 + t31;
-    const double t33 = K_k1 + K_k2 * t32;
-    const double t34 = 1.0 + t32 * t33;
-    const double t35 = K_p1 * 2.0;
-    const double t36 = t24 * t30;
-    const double t37 = K_fx * (t24 * t34 + t35 * t36 + K_p2 * (t32 + 2.0 * t25));
-    const double t38 = K_p2 * 2.0;
-    const double t39 = t30 * t34 + t36 * t38 + K_p1 * (t32 + 2.0 * t31);
-    const double t40 = 2.0 * t30;
-    const double t41 = t32 * (K_k2 * t40) + t33 * t40;
-    const double t42 = K_p1 * (t30 * (-4.0) - t40) - (t34 + t30 * t41 + t24 * t38);
-    const double t43 = K_fx * (t24 * (t35 + t41) + K_p2 * t40) - K_s * t42;
-    const double t44 = 2.0 * t24;
-    const double t45 = t32 * (K_k2 * t44) + t33 * t44;
-    const double t46 = K_p2 * (t24 * (-4.0) - t44) - (t34 + t24 * t45 + t30 * t35);
-    const double t47 = t30 * (t38 + t45) + K_p1 * t44;
-    const double t48 = K_fx * t46 - K_s * t47;
-    const double t49 = t23 * t24;
-    const double t50 = t23 * t30;
-    const double t51 = t43 * t50 - t48 * t49;
-    const double t52 = -t22;
-    const double t53 = t23 * t48;
-    const double t54 = t23 * t43;
-    const double t55 = K_fy * t42;
-    const double t56 = K_fy * t47;
-    const double t57 = t49 * t56 - t50 * t55;
-    const double t58 = t23 * t56;
-    const double t59 = t23 * t55;
-    res[0] = K_u0 + (t37 + K_s * t39) - z_x;
-    res[1] = K_v0 + K_fy * t39 - z_y;
+    const double t33 = t32 * K_k2;
+    const double t34 = K_k1 + t33;
+    const double t35 = 1.0 + t32 * t34;
+    const double t36 = 2.0 * K_p1;
+    const double t37 = t24 * t30;
+    const double t38 = K_fx * (K_p2 * (t32 + 2.0 * t25) + (t24 * t35 + t36 * t37));
+    const double t39 = 2.0 * K_p2;
+    const double t40 = K_p1 * (t32 + 2.0 * t31) + (t30 * t35 + t37 * t39);
+    const double t41 = 2.0 * t30;
+    const double t42 = t33 + t34;
+    const double t43 = t41 * t42;
+    const double t44 = K_p1 * (t41 + t30 * 4.0) + (t24 * t39 + (t35 + t30 * t43));
+    const double t45 = K_fx * (t24 * (t36 + t43) + K_p2 * t41) + K_s * t44;
+    const double t46 = 2.0 * t24;
+    const double t47 = t42 * t46;
+    const double t48 = K_p2 * (t46 + t24 * 4.0) + (t30 * t36 + (t35 + t24 * t47));
+    const double t49 = t30 * (t39 + t47) + K_p1 * t46;
+    const double t50 = K_fx * t48 + K_s * t49;
+    const double t51 = t23 * t24;
+    const double t52 = t23 * t30;
+    const double t53 = t50 * t51 + t45 * t52;
+    const double t54 = -t22;
+    const double t55 = t23 * t50;
+    const double t56 = t23 * t45;
+    const double t57 = K_fy * t44;
+    const double t58 = K_fy * t49;
+    const double t59 = t51 * t58 + t52 * t57;
+    const double t60 = t23 * t58;
+    const double t61 = t23 * t57;
+    res[0] = K_s * t40 + (t38 + (K_u0 - z_x));
+    res[1] = t40 * K_fy + (K_v0 - z_y);
     if (res_D_x != NULL) {
-        res_D_x[0] = t43 + t29 * t51;
-        res_D_x[1] = t48 + t51 * t52;
-        res_D_x[2] = t52 * t54 - t29 * t53;
-        res_D_x[3] = t53;
-        res_D_x[4] = -t54;
-        res_D_x[5] = t51;
-        res_D_x[6] = t29 * t57 - t55;
-        res_D_x[7] = t52 * t57 - t56;
-        res_D_x[8] = t29 * t58 + t22 * t59;
-        res_D_x[9] = -t58;
-        res_D_x[10] = t59;
-        res_D_x[11] = t57;
+        res_D_x[0] = t45 + t29 * t53;
+        res_D_x[1] = t53 * t54 - t50;
+        res_D_x[2] = t29 * t55 + t54 * t56;
+        res_D_x[3] = t55;
+        res_D_x[4] = t56;
+        res_D_x[5] = -t53;
+        res_D_x[6] = t57 + t29 * t59;
+        res_D_x[7] = t54 * t59 - t58;
+        res_D_x[8] = t29 * t60 + t54 * t61;
+        res_D_x[9] = t60;
+        res_D_x[10] = t61;
+        res_D_x[11] = -t59;
     }
     if (res_D_p != NULL) {
-        res_D_p[0] = t26 * t54 - t17 * t53 - t8 * t51;
-        res_D_p[1] = t27 * t54 - t20 * t53 - t12 * t51;
-        res_D_p[2] = t28 * t54 - t21 * t53 - t14 * t51;
-        res_D_p[3] = t17 * t58 - t26 * t59 - t8 * t57;
-        res_D_p[4] = t20 * t58 - t27 * t59 - t12 * t57;
-        res_D_p[5] = t21 * t58 - t28 * t59 - t14 * t57;
+        res_D_p[0] = t5 * t53 - (t17 * t55 + t26 * t56);
+        res_D_p[1] = t10 * t53 - (t20 * t55 + t27 * t56);
+        res_D_p[2] = t14 * t53 - (t21 * t55 + t28 * t56);
+        res_D_p[3] = t5 * t59 - (t17 * t60 + t26 * t61);
+        res_D_p[4] = t10 * t59 - (t20 * t60 + t27 * t61);
+        res_D_p[5] = t14 * t59 - (t21 * t60 + t28 * t61);
     }
     return 0;
 }

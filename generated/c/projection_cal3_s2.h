@@ -17,6 +17,11 @@
  *   res_D_x = D2[uncalibrate](K, b) b_D_x
  *   res_D_p = D2[uncalibrate](K, b) b_D_p
  *
+ * Frames:
+ *   res: vector in the frame of z; noise in the frame of z
+ *   res_D_x: columns in the body frame of x
+ *   res_D_p: columns in the frame of p
+ *
  * Conventions:
  *   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
  *       x.retract(d) = x exp(d)
@@ -36,7 +41,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 53 (residual only), 102 (with Jacobians)
+ * Operations: 52 (residual only), 97 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -44,6 +49,8 @@
  */
 #ifndef LIEGEN_FACTORS_PROJECTION_CAL3_S2_H
 #define LIEGEN_FACTORS_PROJECTION_CAL3_S2_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -87,6 +94,18 @@ int liegen_factors_projection_cal3_s2(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_p);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_projection_cal3_s2_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in p,
+    liegen_factors_in K,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_p,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -11,6 +11,11 @@
  *   res_D_x = -unit(a)^T
  *   res_D_y = unit(a)^T
  *
+ * Frames:
+ *   res: a number, in no frame; noise in its unit
+ *   res_D_x: columns in the frame of x
+ *   res_D_y: columns in the frame of y
+ *
  * Conventions:
  *   R3: stored as it is; tangent: the same; x.retract(d) = x + d
  *   R1: stored as it is; tangent: the same; x.retract(d) = x + d

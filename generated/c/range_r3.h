@@ -11,6 +11,11 @@
  *   res_D_x = -unit(a)^T
  *   res_D_y = unit(a)^T
  *
+ * Frames:
+ *   res: a number, in no frame; noise in its unit
+ *   res_D_x: columns in the frame of x
+ *   res_D_y: columns in the frame of y
+ *
  * Conventions:
  *   R3: stored as it is; tangent: the same; x.retract(d) = x + d
  *   R1: stored as it is; tangent: the same; x.retract(d) = x + d
@@ -31,6 +36,8 @@
  */
 #ifndef LIEGEN_FACTORS_RANGE_R3_H
 #define LIEGEN_FACTORS_RANGE_R3_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -71,6 +78,17 @@ int liegen_factors_range_r3(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_range_r3_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -19,6 +19,11 @@
  *   res_D_p = D2[uncalibrate](K, c) D2[distort](K, b) b_D_p
  *   res_D_K = D1[uncalibrate](K, c) + D2[uncalibrate](K, c) D1[distort](K, b)
  *
+ * Frames:
+ *   res: vector in the frame of z; noise in the frame of z
+ *   res_D_x: columns in the body frame of x
+ *   res_D_p: columns in the frame of p
+ *
  * Conventions:
  *   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
  *       x.retract(d) = x exp(d)
@@ -39,7 +44,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 60 (residual only), 149 (with Jacobians)
+ * Operations: 58 (residual only), 138 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -47,6 +52,8 @@
  */
 #ifndef LIEGEN_FACTORS_SFM_CAL3_BUNDLER_H
 #define LIEGEN_FACTORS_SFM_CAL3_BUNDLER_H
+
+#include "liegen_factors_batch.h"
 
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
@@ -92,6 +99,19 @@ int liegen_factors_sfm_cal3_bundler(
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_p,
     double *LIEGEN_FACTORS_RESTRICT res_D_K);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_sfm_cal3_bundler_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in p,
+    liegen_factors_in K,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_p,
+    liegen_factors_out res_D_K,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

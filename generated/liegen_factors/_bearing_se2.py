@@ -10,6 +10,11 @@
 #   res_D_x = -((J a)^T / |a|^2) [I, J a]
 #   res_D_y = ((J a)^T / |a|^2) R(x)^T R(y) [I, 0]
 #
+# Frames:
+#   res: tangent vector in the body frame of z; noise in the body frame of z
+#   res_D_x: columns in the body frame of x
+#   res_D_y: columns in the body frame of y
+#
 # Conventions:
 #   SE2: stored (cos, sin, x, y); tangent: x [m], y [m], angle [rad]; x.retract(d) = x exp(d)
 #   SO2: stored (cos, sin); tangent: angle [rad]; x.retract(d) = x exp(d)

@@ -9,6 +9,11 @@
 #   res_D_x = -I
 #   res_D_y = I
 #
+# Frames:
+#   res: vector in the frame of z; noise in the frame of z
+#   res_D_x: columns in the frame of x
+#   res_D_y: columns in the frame of y
+#
 # Conventions:
 #   R2: stored as it is; tangent: the same; x.retract(d) = x + d
 #

@@ -9,6 +9,11 @@
 #   res_D_x = -I
 #   res_D_y = I
 #
+# Frames:
+#   res: tangent vector in the body frame of z; noise in the body frame of z
+#   res_D_x: columns in the body frame of x
+#   res_D_y: columns in the body frame of y
+#
 # Conventions:
 #   SO2: stored (cos, sin); tangent: angle [rad]; x.retract(d) = x exp(d)
 #

@@ -10,6 +10,11 @@
 #   res_D_x = -Jr^-1(res) Ad(a^-1)
 #   res_D_y = Jr^-1(res)
 #
+# Frames:
+#   res: tangent vector in the body frame of z; noise in the body frame of z
+#   res_D_x: columns in the body frame of x
+#   res_D_y: columns in the body frame of y
+#
 # Conventions:
 #   SO3: stored unit quaternion (x, y, z, w); tangent: rotation vector [rad]; x.retract(d) = x exp(d)
 #
@@ -21,7 +26,7 @@
 #   res_D_x: 3 x 3, derivative of res by the tangent of x
 #   res_D_y: 3 x 3, derivative of res by the tangent of y
 #
-# Operations: 89 (residual only), 200 (with Jacobians)
+# Operations: 89 (residual only), 184 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -123,86 +128,93 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     x_qx, x_qy, x_qz, x_qw = x
     y_qx, y_qy, y_qz, y_qw = y
     z_qx, z_qy, z_qz, z_qw = z
-    t0 = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz
-    t1 = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy
-    t2 = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx
-    t3 = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw
-    t4 = z_qw * t0 + z_qx * t1 + z_qy * t2 + z_qz * t3
-    t5 = t4 < 0.0
-    t6 = np.where(t5, -t4, t4)
-    t7 = t6 * (t6 * (-1.9706594439912486) - 53.140079803829785)
-    t8 = t6 * (t6 * (t7 - 394.7070900135248) - 1154.390519058362)
-    t9 = t6 * (t8 - 1428.6005826470916) - 625.2634492025667
-    t10 = t6 * (t6 * (t6 + 30.60254106940516) + 274.9201039627929)
-    t11 = t6 * (t6 * (t10 + 1049.5316871721448) + 1920.0872896723695)
-    t12 = t9 / (t6 * (t11 + 1663.2554269021732) + 547.7115214751914)
-    t13 = 2.0 + (t6 - 1.0) * t12
-    t14 = np.where(t5, -t13, t13)
-    t15 = t14 * (z_qw * t1 - z_qx * t0 - z_qy * t3 + z_qz * t2)
-    t16 = t14 * (z_qw * t2 + z_qx * t3 - z_qy * t0 - z_qz * t1)
-    t17 = t14 * (z_qw * t3 - z_qx * t2 + z_qy * t1 - z_qz * t0)
-    t18 = t15 * t15 + t16 * t16 + t17 * t17
-    t19 = t18 * (2.25732705039638e-06 * t18 - 0.07465244042649771)
-    t20 = t18 * (t19 + 38.45987747204322) - 3799.5172048139725
-    t21 = t18 * (t18 * (t18 - 635.5207748643182) + 92825.69243378133)
-    t22 = 0.08333333333333333 + t20 * (t18 / (t21 - 2735652.38746603))
-    t23 = 1.0 - t18 * t22
-    t24 = t15 * t22
-    t25 = t23 + t15 * t24
-    t26 = t2 * (-2.0)
-    t27 = t2 * t26
-    t28 = t3 * (-2.0)
-    t29 = t3 * t28
-    t30 = 1.0 + (t27 + t29)
-    t31 = t16 * t24
-    t32 = t17 * 0.5
+    t0 = x_qz * y_qz + (x_qy * y_qy + (x_qw * y_qw + x_qx * y_qx))
+    t1 = z_qw * t0
+    t2 = y_qy * x_qz + (x_qw * y_qx - y_qw * x_qx - x_qy * y_qz)
+    t3 = z_qx * t2
+    t4 = t1 + t3
+    t5 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz
+    t6 = z_qy * t5
+    t7 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz
+    t8 = z_qz * t7
+    t9 = t6 + t8
+    t10 = t4 + t9
+    t11 = t10 < 0.0
+    t12 = np.where(t11, t10, -t10)
+    t13 = t12 * (t12 * 1.9706594439912486 - 53.140079803829785)
+    t14 = t12 * (t12 * (t13 + 394.7070900135248) - 1154.390519058362)
+    t15 = t12 * (t14 + 1428.6005826470916) - 625.2634492025667
+    t16 = t12 * (t12 * (t12 - 30.60254106940516) + 274.9201039627929)
+    t17 = t12 * (t12 * (t16 - 1049.5316871721448) + 1920.0872896723695)
+    t18 = t15 / (t12 * (t17 - 1663.2554269021732) + 547.7115214751914)
+    t19 = 2.0 + (-1.0 - t12) * t18
+    t20 = np.where(t11, t19, -t19)
+    t21 = z_qw * t2
+    t22 = t0 * z_qx
+    t23 = t21 - t22
+    t24 = z_qy * t7
+    t25 = t5 * z_qz
+    t26 = t24 - t25
+    t27 = t20 * (t26 - t23)
+    t28 = z_qw * t5
+    t29 = t0 * z_qy
+    t30 = t28 - t29
+    t31 = z_qx * t7
+    t32 = t2 * z_qz
     t33 = t31 - t32
-    t34 = t0 * t28
-    t35 = t1 * t26
-    t36 = t34 - t35
-    t37 = t17 * t24
-    t38 = t16 * 0.5
-    t39 = t37 + t38
-    t40 = t1 * t28
-    t41 = t0 * t26
-    t42 = t40 + t41
-    t43 = t34 + t35
-    t44 = t1 * (-2.0)
-    t45 = t1 * t44
-    t46 = 1.0 + (t29 + t45)
-    t47 = t0 * t44
-    t48 = t2 * t28
-    t49 = t47 - t48
-    t50 = t41 - t40
-    t51 = t47 + t48
-    t52 = 1.0 + (t27 + t45)
-    t53 = t16 * t22
-    t54 = t23 + t16 * t53
-    t55 = t31 + t32
-    t56 = t17 * t53
-    t57 = t15 * 0.5
-    t58 = t56 - t57
-    t59 = t23 + t17 * (t17 * t22)
-    t60 = t37 - t38
-    t61 = t56 + t57
-    res[0] = t15
-    res[1] = t16
-    res[2] = t17
-    res_D_x[0, 0] = t39 * t42 - (t25 * t30 + t33 * t36)
-    res_D_x[0, 1] = t25 * t43 - t33 * t46 - t39 * t49
-    res_D_x[0, 2] = t33 * t51 - t25 * t50 - t39 * t52
-    res_D_x[1, 0] = t42 * t58 - (t30 * t55 + t36 * t54)
-    res_D_x[1, 1] = t43 * t55 - t46 * t54 - t49 * t58
-    res_D_x[1, 2] = t51 * t54 - t50 * t55 - t52 * t58
-    res_D_x[2, 0] = t42 * t59 - (t30 * t60 + t36 * t61)
-    res_D_x[2, 1] = t43 * t60 - t46 * t61 - t49 * t59
-    res_D_x[2, 2] = t51 * t61 - t50 * t60 - t52 * t59
-    res_D_y[0, 0] = t25
-    res_D_y[0, 1] = t33
-    res_D_y[0, 2] = t39
-    res_D_y[1, 0] = t55
-    res_D_y[1, 1] = t54
-    res_D_y[1, 2] = t58
-    res_D_y[2, 0] = t60
-    res_D_y[2, 1] = t61
-    res_D_y[2, 2] = t59
+    t34 = t20 * (t30 + t33)
+    t35 = z_qw * t7
+    t36 = t0 * z_qz
+    t37 = t35 - t36
+    t38 = z_qx * t5
+    t39 = t2 * z_qy
+    t40 = t38 - t39
+    t41 = t20 * (t40 - t37)
+    t42 = t20 * 0.5
+    t43 = t41 * t41 + (t27 * t27 + t34 * t34)
+    t44 = t43 * (t43 * (-2.25732705039638e-06) + 0.07465244042649771)
+    t45 = t43 * (t44 - 38.45987747204322) + 3799.5172048139725
+    t46 = t43 * (t43 * (t43 - 635.5207748643182) + 92825.69243378133)
+    t47 = t45 * (t43 / (t46 - 2735652.38746603)) - 0.08333333333333333
+    t48 = t27 * t47
+    t49 = t20 * (t23 + t26)
+    t50 = t38 + t39
+    t51 = t35 + t36
+    t52 = t20 * (t30 - t33)
+    t53 = t31 + t32
+    t54 = t28 + t29
+    t55 = t20 * (t37 + t40)
+    t56 = t34 * t47
+    t57 = t1 - t3
+    t58 = t6 - t8
+    t59 = t24 + t25
+    t60 = t21 + t22
+    t61 = t41 * t47
+    t62 = 1.0 + t43 * t47
+    t63 = t34 * t48
+    t64 = t41 * (-0.5)
+    t65 = t41 * t48
+    t66 = t34 * 0.5
+    t67 = t41 * t56
+    t68 = t27 * (-0.5)
+    res[0] = t27
+    res[1] = -t34
+    res[2] = t41
+    res_D_x[0, 0] = t42 * (t4 - t9) - t48 * t49
+    res_D_x[0, 1] = t42 * (t50 + t51) - t48 * t52
+    res_D_x[0, 2] = t42 * (t53 - t54) - t48 * t55
+    res_D_x[1, 0] = t42 * (t50 - t51) + t49 * t56
+    res_D_x[1, 1] = t42 * (t57 + t58) + t52 * t56
+    res_D_x[1, 2] = t42 * (t59 + t60) + t55 * t56
+    res_D_x[2, 0] = t42 * (t53 + t54) - t49 * t61
+    res_D_x[2, 1] = t42 * (t59 - t60) - t52 * t61
+    res_D_x[2, 2] = t42 * (t57 - t58) - t55 * t61
+    res_D_y[0, 0] = t62 - t27 * t48
+    res_D_y[0, 1] = t63 + t64
+    res_D_y[0, 2] = -(t65 + t66)
+    res_D_y[1, 0] = t63 - t64
+    res_D_y[1, 1] = t62 - t34 * t56
+    res_D_y[1, 2] = t67 + t68
+    res_D_y[2, 0] = t66 - t65
+    res_D_y[2, 1] = t67 - t68
+    res_D_y[2, 2] = t62 - t41 * t61

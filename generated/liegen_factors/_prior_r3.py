@@ -8,6 +8,10 @@
 # Jacobians:
 #   res_D_x = I
 #
+# Frames:
+#   res: vector in the frame of z; noise in the frame of z
+#   res_D_x: columns in the frame of x
+#
 # Conventions:
 #   R3: stored as it is; tangent: the same; x.retract(d) = x + d
 #

@@ -8,6 +8,10 @@
 # Jacobians:
 #   res_D_x = D2[local](z, x)
 #
+# Frames:
+#   res: tangent vector in the frame of z, in the tangent basis at z; noise in that basis
+#   res_D_x: columns in the frame of x, in the tangent basis at x
+#
 # Conventions:
 #   S2: stored unit vector; tangent: two angles [rad] in the basis at x; x.retract(d) = exponential map
 #

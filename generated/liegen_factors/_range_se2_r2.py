@@ -10,6 +10,11 @@
 #   res_D_x = -unit(a)^T R(x) [I, 0]
 #   res_D_y = unit(a)^T
 #
+# Frames:
+#   res: a number, in no frame; noise in its unit
+#   res_D_x: columns in the body frame of x
+#   res_D_y: columns in the frame of y
+#
 # Conventions:
 #   SE2: stored (cos, sin, x, y); tangent: x [m], y [m], angle [rad]; x.retract(d) = x exp(d)
 #   R2: stored as it is; tangent: the same; x.retract(d) = x + d

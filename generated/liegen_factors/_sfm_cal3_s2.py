@@ -17,6 +17,11 @@
 #   res_D_p = D2[uncalibrate](K, b) b_D_p
 #   res_D_K = D1[uncalibrate](K, b)
 #
+# Frames:
+#   res: vector in the frame of z; noise in the frame of z
+#   res_D_x: columns in the body frame of x
+#   res_D_p: columns in the frame of p
+#
 # Conventions:
 #   SE3: stored quaternion (x, y, z, w), translation (x, y, z); tangent: rotation [rad], translation [m];
 #       x.retract(d) = x exp(d)
@@ -37,7 +42,7 @@
 # Outside of the domain (results NaN; in C the status has the bit):
 #   bit 0: point behind the camera
 #
-# Operations: 53 (residual only), 102 (with Jacobians)
+# Operations: 52 (residual only), 98 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -129,30 +134,28 @@ def _value(x: Array, p: Array, K: Array, z: Array, res: Array) -> None:
     p_x, p_y, p_z = p
     K_fx, K_fy, K_s, K_u0, K_v0 = K
     z_x, z_y = z
-    t0 = x_qz * 2.0
-    t1 = x_qy * 2.0
-    t2 = x_qx * 2.0
-    t3 = x_qx * t2
-    t4 = x_qy * t1
-    t5 = x_qw * t1
-    t6 = x_qx * t0
-    t7 = x_qw * t2
-    t8 = x_qy * t0
-    t9 = p_y - x_y
-    t10 = p_x - x_x
-    t11 = t10 * (t6 + t5) + t9 * (t8 - t7)
-    t12 = p_z - x_z
-    t13 = t11 + t12 * (1.0 - (t4 + t3))
-    t14 = x_qw * t0
-    t15 = x_qx * t1
-    t16 = x_qz * t0
-    t17 = (1.0 - (t4 + t16)) * t10 + (t15 + t14) * t9
-    t18 = t10 * (t15 - t14) + t9 * (1.0 - (t16 + t3))
-    t19 = (t18 + t12 * (t8 + t7)) / t13
-    t20 = K_u0 + (K_fx * ((t17 + (t6 - t5) * t12) / t13) + K_s * t19)
-    res[0] = t20 - z_x
-    res[1] = K_v0 + K_fy * t19 - z_y
-    invalid = ~(0.0 < t13)
+    t0 = x_qx * 2.0
+    t1 = x_qz * 2.0
+    t2 = x_qw * t0
+    t3 = t1 * x_qy
+    t4 = x_y - p_y
+    t5 = 2.0 * x_qy
+    t6 = x_qw * t5
+    t7 = x_qx * t1
+    t8 = x_x - p_x
+    t9 = x_qx * t0
+    t10 = 1.0 - x_qy * t5
+    t11 = x_z - p_z
+    t12 = t11 * (t10 - t9) + (t8 * (t7 + t6) + t4 * (t3 - t2))
+    t13 = x_qz * t1
+    t14 = t1 * x_qw
+    t15 = x_qx * t5
+    t16 = t8 * (t15 - t14) + t4 * (1.0 - t13 - t9)
+    t17 = (t11 * (t3 + t2) + t16) / t12
+    t18 = t11 * (t7 - t6) + (t8 * (t10 - t13) + t4 * (t15 + t14))
+    res[0] = K_s * t17 + (K_fx * (t18 / t12) + (K_u0 - z_x))
+    res[1] = t17 * K_fy + (K_v0 - z_y)
+    invalid = ~(t12 < 0.0)
     np.copyto(res, np.nan, where=invalid)
 
 
@@ -170,68 +173,69 @@ def _jacobians(
     p_x, p_y, p_z = p
     K_fx, K_fy, K_s, K_u0, K_v0 = K
     z_x, z_y = z
-    t0 = x_qz * 2.0
-    t1 = x_qx * t0
-    t2 = x_qy * 2.0
-    t3 = x_qw * t2
-    t4 = t1 + t3
-    t5 = p_x - x_x
-    t6 = x_qy * t0
-    t7 = x_qx * 2.0
-    t8 = x_qw * t7
-    t9 = t6 - t8
-    t10 = p_y - x_y
-    t11 = x_qy * t2
-    t12 = x_qx * t7
-    t13 = 1.0 - (t11 + t12)
-    t14 = p_z - x_z
-    t15 = t5 * t4 + t10 * t9 + t14 * t13
-    t16 = x_qz * t0
-    t17 = 1.0 - (t11 + t16)
-    t18 = x_qx * t2
-    t19 = x_qw * t0
-    t20 = t18 + t19
-    t21 = t1 - t3
-    t22 = t17 * t5 + t20 * t10 + t21 * t14
-    t23 = 1.0 / t15
-    t24 = t22 * t23
-    t25 = t18 - t19
-    t26 = 1.0 - (t16 + t12)
-    t27 = t6 + t8
-    t28 = t5 * t25 + t10 * t26 + t14 * t27
-    t29 = t23 * t28
-    t30 = t23 * t29
-    t31 = K_fx * (t23 * t24) + K_s * t30
-    t32 = -t22
-    t33 = K_fx * t23
-    t34 = K_s * t23
-    t35 = K_fy * t30
-    t36 = K_fy * t23
-    res[0] = K_u0 + (K_fx * t24 + K_s * t29) - z_x
-    res[1] = K_v0 + K_fy * t29 - z_y
-    res_D_x[0, 0] = K_s + t28 * t31
-    res_D_x[0, 1] = t31 * t32 - K_fx
-    res_D_x[0, 2] = t28 * t33 + t32 * t34
-    res_D_x[0, 3] = -t33
-    res_D_x[0, 4] = -t34
-    res_D_x[0, 5] = t31
-    res_D_x[1, 0] = K_fy + t28 * t35
-    res_D_x[1, 1] = t32 * t35
-    res_D_x[1, 2] = t32 * t36
-    res_D_x[1, 4] = -t36
+    t0 = x_y - p_y
+    t1 = 2.0 * x_qz
+    t2 = x_qy * t1
+    t3 = 2.0 * x_qx
+    t4 = t3 * x_qw
+    t5 = t2 - t4
+    t6 = x_z - p_z
+    t7 = x_qy * 2.0
+    t8 = 1.0 - x_qy * t7
+    t9 = x_qx * t3
+    t10 = t9 - t8
+    t11 = x_x - p_x
+    t12 = t1 * x_qx
+    t13 = x_qw * t7
+    t14 = t12 + t13
+    t15 = t11 * t14 + (t0 * t5 - t6 * t10)
+    t16 = 1.0 / t15
+    t17 = x_qz * t1
+    t18 = t9 + (t17 - 1.0)
+    t19 = t2 + t4
+    t20 = x_qx * t7
+    t21 = t1 * x_qw
+    t22 = t21 - t20
+    t23 = t11 * t22 + (t0 * t18 - t6 * t19)
+    t24 = t16 * t23
+    t25 = t20 + t21
+    t26 = t13 - t12
+    t27 = t17 - t8
+    t28 = t0 * t25 - t6 * t26 - t11 * t27
+    t29 = t16 * t28
+    t30 = t16 * K_fx
+    t31 = t16 * t24
+    t32 = K_s * t31 - t29 * t30
+    t33 = K_s * t16
+    t34 = -t28
+    t35 = K_fy * t31
+    t36 = t16 * K_fy
+    t37 = -t24
+    res[0] = K_fx * t29 + (K_u0 - z_x - K_s * t24)
+    res[1] = K_v0 - z_y - t24 * K_fy
+    res_D_x[0, 0] = K_s + t23 * t32
+    res_D_x[0, 1] = t28 * t32 - K_fx
+    res_D_x[0, 2] = t33 * t34 - t23 * t30
+    res_D_x[0, 3] = t30
+    res_D_x[0, 4] = t33
+    res_D_x[0, 5] = t32
+    res_D_x[1, 0] = K_fy + t23 * t35
+    res_D_x[1, 1] = t28 * t35
+    res_D_x[1, 2] = t34 * t36
+    res_D_x[1, 4] = t36
     res_D_x[1, 5] = t35
-    res_D_p[0, 0] = t17 * t33 + t25 * t34 - t4 * t31
-    res_D_p[0, 1] = t20 * t33 + t26 * t34 - t9 * t31
-    res_D_p[0, 2] = t21 * t33 + t27 * t34 - t13 * t31
-    res_D_p[1, 0] = t25 * t36 - t4 * t35
-    res_D_p[1, 1] = t26 * t36 - t9 * t35
-    res_D_p[1, 2] = t27 * t36 - t13 * t35
-    res_D_K[0, 0] = t24
-    res_D_K[0, 2] = t29
+    res_D_p[0, 0] = t27 * t30 + (t22 * t33 - t14 * t32)
+    res_D_p[0, 1] = t18 * t33 - t5 * t32 - t25 * t30
+    res_D_p[0, 2] = t26 * t30 + (t10 * t32 - t19 * t33)
+    res_D_p[1, 0] = t22 * t36 - t14 * t35
+    res_D_p[1, 1] = t18 * t36 - t5 * t35
+    res_D_p[1, 2] = t10 * t35 - t19 * t36
+    res_D_K[0, 0] = t29
+    res_D_K[0, 2] = t37
     res_D_K[0, 3] = 1.0
-    res_D_K[1, 1] = t29
+    res_D_K[1, 1] = t37
     res_D_K[1, 4] = 1.0
-    invalid = ~(0.0 < t15)
+    invalid = ~(t15 < 0.0)
     np.copyto(res, np.nan, where=invalid)
     np.copyto(res_D_x, np.nan, where=invalid)
     np.copyto(res_D_p, np.nan, where=invalid)
