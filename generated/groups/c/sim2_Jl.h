@@ -15,7 +15,7 @@
  *   d: 4, R4 (v0, v1, v2, v3), given
  *   out: 4 x 4 matrix
  *
- * Operations: 234
+ * Operations: 232
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -23,6 +23,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM2_JL_H
 #define LIEGEN_GROUPS_SIM2_JL_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,6 +41,13 @@ extern "C" {
 int liegen_groups_sim2_Jl(
     const double *d,
     double *out);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim2_Jl_batch(
+    ptrdiff_t n,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -15,7 +15,7 @@
  *   d: 4, R4 (v0, v1, v2, v3), given
  *   out: 4 x 4 matrix
  *
- * Operations: 237
+ * Operations: 233
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -35,7 +35,7 @@ int liegen_groups_sim2_Jl_inv(
     const double d_v2 = d[2];
     const double d_v3 = d[3];
     const double t0 = d_v2 * d_v2;
-    const double t1 = 0.25 * t0;
+    const double t1 = t0 * 0.25;
     const double t2 = t1 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t1;
     const double t3 = t0 * (t0 * 3.727119152236193e-19 - 1.5548246938628861e-16);
     const double t4 = t0 * (t3 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
@@ -56,7 +56,7 @@ int liegen_groups_sim2_Jl_inv(
     const double t19 = t0 * (t0 * t18 + 2.7557319223993533e-07) - 2.4801587301587488e-05;
     const double t20 = t14 ? 0.001388888888888889 + t0 * t19 : t15;
     const double t21 = t8 * cos(t7);
-    const double t22 = (t21 + 0.16666666666666666 * (t0 - 6.0)) * (t9 * t9);
+    const double t22 = t9 * (t9 * (t21 + 0.16666666666666666 * (t0 - 6.0)));
     const double t23 = t0 * (t0 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const double t24 = t0 * (t0 * (t23 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const double t25 = t0 * (t0 * (t24 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -70,16 +70,16 @@ int liegen_groups_sim2_Jl_inv(
     const int t33 = t32 <= 20.0;
     const double t34 = 1.0 / (t33 ? 4.47213595499958 : d_v3);
     const double t35 = t34 * t34;
-    const double t36 = t35 * (0.5 * (t30 + t31) - 1.0);
-    const double t37 = (0.5 * ((t30 - t31) * t34) - 1.0) * t35;
-    const double t38 = t35 * (t36 - 0.5);
+    const double t36 = t35 * (1.0 + (-0.5 * (t30 + t31)));
+    const double t37 = (1.0 + t34 * (0.5 * (t31 - t30))) * t35;
+    const double t38 = t35 * (-0.5 - t36);
     const double t39 = t32 * (3.4565955041241694e-26 + t32 * 3.6326829868633628e-28);
     const double t40 = 1.9532920807021222e-20 + t32 * (4.013242371241884e-23 + t39);
     const double t41 = 2.8114496129200326e-15 + t32 * (8.221323631272194e-18 + t32 * t40);
     const double t42 = 1.6059043812002977e-10 + t32 * (7.647164280237662e-13 + t32 * t41);
     const double t43 = 2.755731922397618e-06 + t32 * (2.5052108386111277e-08 + t32 * t42);
     const double t44 = 0.008333333333333333 + t32 * (0.00019841269841269904 + t32 * t43);
-    const double t45 = t33 ? 0.16666666666666666 + t32 * t44 : t37;
+    const double t45 = t33 ? -0.16666666666666666 - t32 * t44 : t37;
     const double t46 = t32 * (1.7099778208689592e-26 + t32 * (-1.289524317228906e-28));
     const double t47 = t32 * (9.085596999052415e-22 + t32 * (9.134987684433098e-25 + t46));
     const double t48 = t32 * (1.561955279397849e-16 + t32 * (4.107137456405439e-19 + t47));
@@ -88,40 +88,41 @@ int liegen_groups_sim2_Jl_inv(
     const double t51 = 0.001388888888888889 + t32 * (2.480158730158703e-05 + t32 * t50);
     const double t52 = 0.041666666666666664 + t32 * t51;
     const double t53 = t33 ? t52 : t38;
-    const double t54 = t33 ? 0.5 + t32 * t52 : t36;
-    const double t55 = t32 + t0 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t0;
+    const double t54 = t33 ? -0.5 - t32 * t52 : t36;
+    const double t55 = t0 + t32 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t0;
     const double t56 = t32 + t55;
     const double t57 = t55 / t56;
     const double t58 = t32 / t56;
     const double t59 = t58 * (t33 ? t51 : t35 * (t38 - 0.041666666666666664));
     const double t60 = t59 + t57 * t20;
-    const double t61 = t58 * (t33 ? t44 : t35 * (t37 - 0.16666666666666666));
-    const double t62 = t53 * t58 + t13 * t57;
+    const double t61 = t53 * t58 + t13 * t57;
+    const double t62 = t58 * (t33 ? t44 : t35 * (-0.16666666666666666 - t37));
     const double t63 = t29 + (-2.0 * t13);
-    const double t64 = 0.5 / t54;
-    const double t65 = (t45 + t53 * (-2.0)) * t64;
+    const double t64 = -0.5 / t54;
+    const double t65 = (t53 * (-2.0) - t45) * t64;
     const double t66 = 0.5 / t11;
-    const double t67 = t63 * t62 + t11 * (2.0 * t60 - (t61 + t57 * t28));
-    const double t68 = t58 * (t62 * (t63 * t66 - t65) - t60);
-    const double t69 = 1.0 / (2.0 * (t54 * t58) + t10 * t57);
-    const double t70 = t65 + 2.0 * (t0 * (t67 * (t64 * t66)));
-    const double t71 = t69 * (t45 * t58 + t29 * t57);
-    const double t72 = 2.0 * (t0 * (t69 * (t68 + 0.5 * (t57 * (t20 * 4.0 - t28)))));
-    const double t73 = d_v3 * (t70 - t72) - 0.5;
-    const double t74 = d_v2 * (t71 - t70 + t72);
-    const double t75 = d_v1 * t74 - d_v0 * t73;
-    const double t76 = -2.0 * (t0 * (t11 * (t70 * t69)));
-    const double t77 = 1.0 + d_v3 * (-0.5) + t32 * t65 + t76;
-    const double t78 = d_v0 * t74 + d_v1 * t73;
-    const double t79 = d_v2 * (0.5 - d_v3 * t71);
-    out[0] = t77;
-    out[1] = t79;
-    out[2] = t78;
-    out[3] = t75;
-    out[4] = -t79;
-    out[5] = t77;
-    out[6] = t75;
-    out[7] = -t78;
+    const double t67 = t58 * (t60 + t61 * (t65 - t63 * t66));
+    const double t68 = t0 * 2.0;
+    const double t69 = (t63 * t61 + t11 * (2.0 * t60 - t57 * t28 - t62)) * t68;
+    const double t70 = 1.0 / (-2.0 * (t54 * t58) + t10 * t57);
+    const double t71 = t68 * t70;
+    const double t72 = t70 * (t29 * t57 - t45 * t58);
+    const double t73 = t65 + t66 * (t64 * t69);
+    const double t74 = t73 + t71 * (t67 + (t28 + t20 * (-4.0)) * (0.5 * t57));
+    const double t75 = d_v2 * (t72 - t74);
+    const double t76 = 0.5 - d_v3 * t74;
+    const double t77 = d_v0 * t76 + t75 * d_v1;
+    const double t78 = t32 * t65 + (1.0 + d_v3 * (-0.5) - t71 * (t11 * t73));
+    const double t79 = d_v0 * t75 - d_v1 * t76;
+    const double t80 = d_v2 * (0.5 - d_v3 * t72);
+    out[0] = t78;
+    out[1] = t80;
+    out[2] = t79;
+    out[3] = t77;
+    out[4] = -t80;
+    out[5] = t78;
+    out[6] = t77;
+    out[7] = -t79;
     out[8] = 0.0;
     out[9] = 0.0;
     out[10] = 1.0;

@@ -15,7 +15,7 @@
  *   d: 4, R4 (v0, v1, v2, v3), given
  *   out: 4 x 4 matrix
  *
- * Operations: 235
+ * Operations: 233
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -54,7 +54,7 @@ int liegen_groups_sim2_Jr(
     const double t17 = t0 * (t0 * t16 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
     const double t18 = t0 * (t0 * t17 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
     const double t19 = t7 * cos(t6);
-    const double t20 = (t19 + 0.16666666666666666 * (t0 - 6.0)) * (t10 * t10);
+    const double t20 = t10 * (t10 * (t19 + 0.16666666666666666 * (t0 - 6.0)));
     const double t21 = t0 * (t0 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const double t22 = t0 * (t0 * (t21 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const double t23 = t0 * (t0 * (t22 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -66,55 +66,55 @@ int liegen_groups_sim2_Jr(
     const double t29 = t28 ? -2.75 : d_v3;
     const double t30 = exp(-d_v3);
     const double t31 = 1.0 / t30;
-    const double t32 = t29 * (2.0 + 0.5 * t29) + 3.0 + t31 * (t29 - 3.0);
-    const double t33 = 1.0 / t29;
-    const double t34 = t33 * t33;
-    const double t35 = (t31 - 1.0) * t33;
-    const double t36 = t33 * (t35 - 1.0);
-    const double t37 = t33 * (t36 - 0.5);
-    const double t38 = t33 * (t37 - 0.16666666666666666);
-    const double t39 = d_v3 * (2.0567783710503175e-20 + d_v3 * 8.930560564422333e-22);
-    const double t40 = 8.212278817078935e-18 + d_v3 * (4.1178635428421474e-19 + t39);
-    const double t41 = 2.8114690303671545e-15 + d_v3 * (1.561797933076898e-16 + d_v3 * t40);
-    const double t42 = 7.647165960397453e-13 + d_v3 * (4.779485737082404e-14 + d_v3 * t41);
-    const double t43 = 1.6059043692023794e-10 + d_v3 * (1.1470745308538233e-11 + d_v3 * t42);
-    const double t44 = 2.5052108389124404e-08 + d_v3 * (2.0876756992690708e-09 + d_v3 * t43);
-    const double t45 = 2.7557319223944413e-06 + d_v3 * (2.755731922395698e-07 + d_v3 * t44);
-    const double t46 = 0.00019841269841270012 + d_v3 * (2.4801587301587247e-05 + d_v3 * t45);
-    const double t47 = 0.008333333333333333 + d_v3 * (0.001388888888888889 + d_v3 * t46);
-    const double t48 = 0.041666666666666664 + d_v3 * t47;
-    const double t49 = 0.041666666666666664 + d_v3 * (t47 + (t48 + t47 * (-4.0)));
-    const double t50 = 0.16666666666666666 + d_v3 * (t48 + t49);
-    const double t51 = 0.16666666666666666 + d_v3 * t48;
-    const double t52 = t28 ? 0.5 + d_v3 * (t51 + t50) : t34 * (1.0 + t31 * (t29 - 1.0));
-    const double t53 = t28 ? t50 : (t29 + 2.0 + t31 * (t29 - 2.0)) * (t33 * t34);
+    const double t32 = d_v3 * (2.0567783710503175e-20 + d_v3 * 8.930560564422333e-22);
+    const double t33 = 8.212278817078935e-18 + d_v3 * (4.1178635428421474e-19 + t32);
+    const double t34 = 2.8114690303671545e-15 + d_v3 * (1.561797933076898e-16 + d_v3 * t33);
+    const double t35 = 7.647165960397453e-13 + d_v3 * (4.779485737082404e-14 + d_v3 * t34);
+    const double t36 = 1.6059043692023794e-10 + d_v3 * (1.1470745308538233e-11 + d_v3 * t35);
+    const double t37 = 2.5052108389124404e-08 + d_v3 * (2.0876756992690708e-09 + d_v3 * t36);
+    const double t38 = 2.7557319223944413e-06 + d_v3 * (2.755731922395698e-07 + d_v3 * t37);
+    const double t39 = 0.00019841269841270012 + d_v3 * (2.4801587301587247e-05 + d_v3 * t38);
+    const double t40 = 0.008333333333333333 + d_v3 * (0.001388888888888889 + d_v3 * t39);
+    const double t41 = 0.041666666666666664 + d_v3 * t40;
+    const double t42 = -1.0 / t29;
+    const double t43 = (1.0 - t31) * t42;
+    const double t44 = t42 * (1.0 - t43);
+    const double t45 = t42 * (0.5 - t44);
+    const double t46 = t42 * (0.16666666666666666 - t45);
+    const double t47 = t42 * t42;
+    const double t48 = t47 * (t31 * (t29 - 3.0) + (t29 * (2.0 + 0.5 * t29) + 3.0));
+    const double t49 = 0.041666666666666664 + d_v3 * (t40 * (-4.0) + (t40 + t41));
+    const double t50 = 0.16666666666666666 + d_v3 * (t41 + t49);
+    const double t51 = 0.16666666666666666 + d_v3 * t41;
+    const double t52 = t28 ? 0.5 + d_v3 * (t51 + t50) : t47 * (1.0 + t31 * (t29 - 1.0));
+    const double t53 = t28 ? t50 : (t31 * (2.0 - t29) + (-2.0 - t29)) * (t42 * t47);
     const double t54 = 0.5 + d_v3 * t51;
     const double t55 = d_v3 * d_v3;
-    const double t56 = t55 + t0 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t0;
+    const double t56 = t0 + t55 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t0;
     const double t57 = t55 + t56;
     const double t58 = t55 / t57;
     const double t59 = t56 / t57;
     const double t60 = d_v3 * (t13 ? t0 * t18 - 0.001388888888888889 : t14) - t26;
-    const double t61 = t58 * (t28 ? t47 : t33 * (t38 - 0.041666666666666664));
-    const double t62 = t58 * (t28 ? t48 : t38) + t59 * (t12 + d_v3 * t26);
-    const double t63 = t58 * (t28 ? t51 : t37) + t59 * (t27 + d_v3 * t12);
+    const double t61 = t58 * (t28 ? t40 : t42 * (0.041666666666666664 - t46));
+    const double t62 = t58 * (t28 ? t41 : t46) + t59 * (t12 + d_v3 * t26);
+    const double t63 = t58 * (t28 ? t51 : t45) + t59 * (t27 + d_v3 * t12);
     const double t64 = t59 * (d_v3 * (t59 * t60 - t61) - t62);
-    const double t65 = t0 * (t30 * (t64 - t58 * (t28 ? t49 : t32 * (t34 * t34))));
-    const double t66 = t30 * t52 + t65;
-    const double t67 = d_v2 * (t30 * (t58 * t53 + t59 * (t63 + d_v3 * t62)));
-    const double t68 = d_v0 * t66 + d_v1 * t67;
-    const double t69 = t30 * (t28 ? 1.0 + d_v3 * t54 : t35) - t0 * (t30 * t63);
-    const double t70 = d_v0 * t67 - d_v1 * t66;
-    const double t71 = t30 * (t58 * (t28 ? t54 : t36) + t59 * (t9 + d_v3 * t27));
-    const double t72 = d_v2 * t71;
-    out[0] = t69;
+    const double t65 = t30 * t0;
+    const double t66 = t30 * t52 + t65 * (t64 - t58 * (t28 ? t49 : t47 * t48));
+    const double t67 = t30 * d_v2;
+    const double t68 = t67 * (t58 * t53 + t59 * (t63 + d_v3 * t62));
+    const double t69 = d_v0 * t66 + t68 * d_v1;
+    const double t70 = t30 * (t28 ? 1.0 + d_v3 * t54 : t43) - t65 * t63;
+    const double t71 = d_v0 * t68 - d_v1 * t66;
+    const double t72 = t67 * (t58 * (t28 ? t54 : t44) + t59 * (t9 + d_v3 * t27));
+    out[0] = t70;
     out[1] = t72;
-    out[2] = t70;
-    out[3] = t68;
+    out[2] = t71;
+    out[3] = t69;
     out[4] = -t72;
-    out[5] = t69;
-    out[6] = t68;
-    out[7] = -t70;
+    out[5] = t70;
+    out[6] = t69;
+    out[7] = -t71;
     out[8] = 0.0;
     out[9] = 0.0;
     out[10] = 1.0;

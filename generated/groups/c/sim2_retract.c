@@ -22,7 +22,7 @@
  *   out_D_x: 4 x 4, derivative of out by the tangent of x
  *   out_D_d: 4 x 4, derivative of out by the tangent of d
  *
- * Operations: 158 (outputs only), 340 (with Jacobians)
+ * Operations: 158 (outputs only), 338 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -146,7 +146,7 @@ int liegen_groups_sim2_retract(
     const double t21 = 0.008333333333333333 + t20;
     const double t22 = t13 ? 0.16666666666666666 - t2 * t21 : (1.0 - t16) * t8;
     const double t23 = d_v3 * d_v3;
-    const double t24 = t23 + t2 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t2;
+    const double t24 = t2 + t23 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t2;
     const double t25 = t23 + t24;
     const double t26 = t24 / t25;
     const int t27 = fabs(d_v3) <= 2.75;
@@ -155,8 +155,8 @@ int liegen_groups_sim2_retract(
     const double t30 = 1.0 / t29;
     const double t31 = (1.0 - t30) * t28;
     const double t32 = t28 * (1.0 - t31);
-    const double t33 = d_v3 * (-8.930560564422333e-22);
-    const double t34 = d_v3 * (t33 + 2.0567783710503175e-20) - 4.1178635428421474e-19;
+    const double t33 = d_v3 * 8.930560564422333e-22;
+    const double t34 = d_v3 * (2.0567783710503175e-20 - t33) - 4.1178635428421474e-19;
     const double t35 = d_v3 * (d_v3 * t34 + 8.212278817078935e-18) - 1.561797933076898e-16;
     const double t36 = d_v3 * (d_v3 * t35 + 2.8114690303671545e-15) - 4.779485737082404e-14;
     const double t37 = d_v3 * (d_v3 * t36 + 7.647165960397453e-13) - 1.1470745308538233e-11;
@@ -169,23 +169,23 @@ int liegen_groups_sim2_retract(
     const double t44 = t23 / t25;
     const double t45 = t26 * (t15 - t22) - t44 * (t27 ? t43 : t28 * (0.5 - t32));
     const double t46 = 0.5 - d_v3 * t43;
-    const double t47 = t29 * (t27 ? 1.0 - d_v3 * t46 : t31) + t2 * (t29 * t45);
+    const double t47 = t29 * (t27 ? 1.0 - d_v3 * t46 : t31) + t45 * (t29 * t2);
     const double t48 = d_v3 * t22;
-    const double t49 = d_v2 * (t29 * (t44 * (t27 ? t46 : t32) + t26 * (t7 - t48)));
+    const double t49 = (t44 * (t27 ? t46 : t32) + t26 * (t7 - t48)) * (d_v2 * t29);
     const double t50 = d_v0 * t47 - d_v1 * t49;
-    const double t51 = d_v0 * t49 + d_v1 * t47;
+    const double t51 = d_v0 * t49 + t47 * d_v1;
     const double t52 = t0 * t30;
     const double t53 = t1 * t30;
     const double t54 = t30 * (t0 * t51 - t1 * t50);
     const double t55 = t30 * (t0 * t50 + t1 * t51);
     const double t56 = t27 ? -2.75 : d_v3;
-    const double t57 = 1.0 / t56;
+    const double t57 = -1.0 / t56;
     const double t58 = exp(-d_v3);
     const double t59 = 1.0 / t58;
-    const double t60 = (t59 - 1.0) * t57;
-    const double t61 = t57 * (t60 - 1.0);
-    const double t62 = t57 * (t61 - 0.5);
-    const double t63 = 4.1178635428421474e-19 + d_v3 * (2.0567783710503175e-20 - t33);
+    const double t60 = (1.0 - t59) * t57;
+    const double t61 = t57 * (1.0 - t60);
+    const double t62 = t57 * (0.5 - t61);
+    const double t63 = 4.1178635428421474e-19 + d_v3 * (t33 + 2.0567783710503175e-20);
     const double t64 = 1.561797933076898e-16 + d_v3 * (8.212278817078935e-18 + d_v3 * t63);
     const double t65 = 4.779485737082404e-14 + d_v3 * (2.8114690303671545e-15 + d_v3 * t64);
     const double t66 = 1.1470745308538233e-11 + d_v3 * (7.647165960397453e-13 + d_v3 * t65);
@@ -197,35 +197,36 @@ int liegen_groups_sim2_retract(
     const double t72 = 0.041666666666666664 + d_v3 * t71;
     const double t73 = 0.16666666666666666 + d_v3 * t72;
     const double t74 = t44 * (t27 ? t73 : t62) + t26 * (t22 + t15);
-    const double t75 = 0.5 + d_v3 * t73;
-    const double t76 = t58 * (t27 ? 1.0 + d_v3 * t75 : t60) - t2 * (t58 * t74);
-    const double t77 = d_v2 * (t58 * (t44 * (t27 ? t75 : t61) + t26 * (t7 + t48)));
-    const int t78 = t2 <= 10.0;
-    const double t79 = (t14 - 0.041666666666666664) / (t78 ? 10.0 : t2);
-    const double t80 = t2 * (t2 * (-8.238352127228608e-22) + 4.09903975815473e-19);
-    const double t81 = t2 * (t80 - 1.5618190715606994e-16) + 4.7794722734271995e-14;
-    const double t82 = t2 * (t2 * t81 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
-    const double t83 = t2 * (t2 * t82 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
-    const double t84 = (t16 + 0.16666666666666666 * (t2 - 6.0)) * (t8 * t8);
-    const double t85 = t13 ? t21 : t84;
-    const double t86 = d_v3 * (t78 ? t2 * t83 - 0.001388888888888889 : t79) - t85;
-    const double t87 = t57 * (t62 - 0.16666666666666666);
-    const double t88 = t44 * (t27 ? t71 : t57 * (t87 - 0.041666666666666664));
-    const double t89 = t44 * (t27 ? t72 : t87) + t26 * (t14 + d_v3 * t85);
-    const double t90 = t26 * (d_v3 * (t26 * t86 - t88) - t89);
-    const double t91 = t57 * t57;
-    const double t92 = t56 * (2.0 + 0.5 * t56) + 3.0 + t59 * (t56 - 3.0);
-    const double t93 = 0.041666666666666664 + d_v3 * (t71 + (t72 + t71 * (-4.0)));
-    const double t94 = t2 * (t58 * (t90 - t44 * (t27 ? t93 : t92 * (t91 * t91))));
-    const double t95 = 0.16666666666666666 + d_v3 * (t72 + t93);
-    const double t96 = t27 ? 0.5 + d_v3 * (t73 + t95) : t91 * (1.0 + t59 * (t56 - 1.0));
-    const double t97 = t58 * t96 + t94;
-    const double t98 = t27 ? t95 : (t56 + 2.0 + t59 * (t56 - 2.0)) * (t57 * t91);
-    const double t99 = d_v2 * (t58 * (t44 * t98 + t26 * (t74 + d_v3 * t89)));
-    const double t100 = d_v0 * t99 - d_v1 * t97;
-    const double t101 = d_v0 * t97 + d_v1 * t99;
+    const double t75 = t2 * t58;
+    const double t76 = 0.5 + d_v3 * t73;
+    const double t77 = t58 * (t27 ? 1.0 + d_v3 * t76 : t60) - t75 * t74;
+    const double t78 = d_v2 * t58;
+    const double t79 = t78 * (t44 * (t27 ? t76 : t61) + t26 * (t7 + t48));
+    const double t80 = t8 * (t8 * (t16 + 0.16666666666666666 * (t2 - 6.0)));
+    const double t81 = t13 ? t21 : t80;
+    const double t82 = t57 * (0.16666666666666666 - t62);
+    const double t83 = t44 * (t27 ? t72 : t82) + t26 * (t14 + d_v3 * t81);
+    const double t84 = t57 * t57;
+    const double t85 = 0.041666666666666664 + d_v3 * (t71 * (-4.0) + (t71 + t72));
+    const double t86 = 0.16666666666666666 + d_v3 * (t72 + t85);
+    const double t87 = t27 ? t86 : (t59 * (2.0 - t56) + (-2.0 - t56)) * (t57 * t84);
+    const double t88 = t78 * (t44 * t87 + t26 * (t74 + d_v3 * t83));
+    const int t89 = t2 <= 10.0;
+    const double t90 = (t14 - 0.041666666666666664) / (t89 ? 10.0 : t2);
+    const double t91 = t2 * (t2 * (-8.238352127228608e-22) + 4.09903975815473e-19);
+    const double t92 = t2 * (t91 - 1.5618190715606994e-16) + 4.7794722734271995e-14;
+    const double t93 = t2 * (t2 * t92 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
+    const double t94 = t2 * (t2 * t93 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
+    const double t95 = d_v3 * (t89 ? t2 * t94 - 0.001388888888888889 : t90) - t81;
+    const double t96 = t44 * (t27 ? t71 : t57 * (0.041666666666666664 - t82));
+    const double t97 = t26 * (d_v3 * (t26 * t95 - t96) - t83);
+    const double t98 = t84 * (t59 * (t56 - 3.0) + (t56 * (2.0 + 0.5 * t56) + 3.0));
+    const double t99 = t27 ? 0.5 + d_v3 * (t73 + t86) : t84 * (1.0 + t59 * (t56 - 1.0));
+    const double t100 = t58 * t99 + t75 * (t97 - t44 * (t27 ? t85 : t84 * t98));
+    const double t101 = d_v0 * t88 - d_v1 * t100;
+    const double t102 = d_v0 * t100 + d_v1 * t88;
     out[0] = x_c * t0 - x_s * t1;
-    out[1] = x_s * t0 + x_c * t1;
+    out[1] = t0 * x_s + x_c * t1;
     out[2] = x_x + x_scale * (x_c * t50 - x_s * t51);
     out[3] = x_y + x_scale * (x_s * t50 + x_c * t51);
     out[4] = x_scale * t29;
@@ -248,14 +249,14 @@ int liegen_groups_sim2_retract(
         out_D_x[15] = 1.0;
     }
     if (out_D_d != NULL) {
-        out_D_d[0] = t76;
-        out_D_d[1] = t77;
-        out_D_d[2] = t100;
-        out_D_d[3] = t101;
-        out_D_d[4] = -t77;
-        out_D_d[5] = t76;
-        out_D_d[6] = t101;
-        out_D_d[7] = -t100;
+        out_D_d[0] = t77;
+        out_D_d[1] = t79;
+        out_D_d[2] = t101;
+        out_D_d[3] = t102;
+        out_D_d[4] = -t79;
+        out_D_d[5] = t77;
+        out_D_d[6] = t102;
+        out_D_d[7] = -t101;
         out_D_d[8] = 0.0;
         out_D_d[9] = 0.0;
         out_D_d[10] = 1.0;

@@ -22,7 +22,7 @@
  *   out_D_x: 4 x 4, derivative of out by the tangent of x
  *   out_D_d: 4 x 4, derivative of out by the tangent of d
  *
- * Operations: 158 (outputs only), 340 (with Jacobians)
+ * Operations: 158 (outputs only), 338 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -30,6 +30,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM2_RETRACT_H
 #define LIEGEN_GROUPS_SIM2_RETRACT_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +60,16 @@ int liegen_groups_sim2_retract(
     double *out,
     double *out_D_x,
     double *out_D_d);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim2_retract_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

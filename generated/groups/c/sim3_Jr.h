@@ -15,7 +15,7 @@
  *   d: 7, R7 (v0, v1, v2, v3, v4, v5, v6), given
  *   out: 7 x 7 matrix
  *
- * Operations: 438
+ * Operations: 437
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -23,6 +23,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_JR_H
 #define LIEGEN_GROUPS_SIM3_JR_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,6 +41,13 @@ extern "C" {
 int liegen_groups_sim3_Jr(
     const double *d,
     double *out);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_Jr_batch(
+    ptrdiff_t n,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -22,7 +22,7 @@
  *   out_D_x: 3 x 7, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 45 (outputs only), 96 (with Jacobians)
+ * Operations: 44 (outputs only), 95 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -50,23 +50,23 @@ int liegen_groups_sim3_act_value(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = x_qx * t0;
-    const double t5 = x_qw * t2;
-    const double t6 = p_x * (1.0 - (t1 + t3)) + p_y * (t4 - t5);
-    const double t7 = x_qx * t2;
-    const double t8 = x_qw * t0;
-    const double t9 = x_qx * 2.0;
+    const double t4 = t0 * x_qx;
+    const double t5 = t2 * x_qw;
+    const double t6 = t2 * x_qx;
+    const double t7 = t0 * x_qw;
+    const double t8 = p_z * (t6 + t7) + (p_x * (t1 - t3) + p_y * (t4 - t5));
+    const double t9 = 2.0 * x_qx;
     const double t10 = x_qx * t9;
-    const double t11 = p_x * (t4 + t5) + p_y * (1.0 - (t3 + t10));
+    const double t11 = p_x * (t4 + t5) + p_y * (1.0 - t3 - t10);
     const double t12 = x_qy * t2;
     const double t13 = x_qw * t9;
-    const double t14 = p_x * (t7 - t8) + p_y * (t12 + t13);
-    out[0] = x_x + x_scale * (t6 + p_z * (t7 + t8));
-    out[1] = x_y + x_scale * (t11 + p_z * (t12 - t13));
-    out[2] = x_z + x_scale * (t14 + p_z * (1.0 - (t1 + t10)));
+    const double t14 = p_z * (t1 - t10) + (p_x * (t6 - t7) + p_y * (t12 + t13));
+    out[0] = x_x + x_scale * t8;
+    out[1] = x_y + x_scale * (p_z * (t12 - t13) + t11);
+    out[2] = x_z + x_scale * t14;
     return 0;
 }
 
@@ -91,26 +91,26 @@ int liegen_groups_sim3_act(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = t0 * x_qx;
+    const double t6 = t2 * x_qw;
     const double t7 = t5 - t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 + t9;
     const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
+    const double t12 = 2.0 * x_qx;
     const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t14 = 1.0 - t3 - t13;
     const double t15 = x_qy * t2;
     const double t16 = x_qw * t12;
     const double t17 = t15 - t16;
     const double t18 = t8 - t9;
     const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
+    const double t20 = t1 - t13;
     const double t21 = x_scale * t10;
     const double t22 = x_scale * t7;
     const double t23 = x_scale * t4;
@@ -120,9 +120,9 @@ int liegen_groups_sim3_act(
     const double t27 = x_scale * t20;
     const double t28 = x_scale * t19;
     const double t29 = x_scale * t18;
-    out[0] = x_x + x_scale * (p_x * t4 + p_y * t7 + p_z * t10);
-    out[1] = x_y + x_scale * (p_x * t11 + p_y * t14 + p_z * t17);
-    out[2] = x_z + x_scale * (p_x * t18 + p_y * t19 + p_z * t20);
+    out[0] = x_x + x_scale * (p_z * t10 + (p_x * t4 + p_y * t7));
+    out[1] = x_y + x_scale * (p_z * t17 + (p_x * t11 + p_y * t14));
+    out[2] = x_z + x_scale * (p_z * t20 + (p_x * t18 + p_y * t19));
     if (out_D_x != NULL) {
         out_D_x[0] = p_y * t21 - p_z * t22;
         out_D_x[1] = p_z * t23 - p_x * t21;
@@ -130,21 +130,21 @@ int liegen_groups_sim3_act(
         out_D_x[3] = t23;
         out_D_x[4] = t22;
         out_D_x[5] = t21;
-        out_D_x[6] = p_x * t23 + p_y * t22 + p_z * t21;
+        out_D_x[6] = p_z * t21 + (p_x * t23 + p_y * t22);
         out_D_x[7] = p_y * t24 - p_z * t25;
         out_D_x[8] = p_z * t26 - p_x * t24;
         out_D_x[9] = p_x * t25 - p_y * t26;
         out_D_x[10] = t26;
         out_D_x[11] = t25;
         out_D_x[12] = t24;
-        out_D_x[13] = p_x * t26 + p_y * t25 + p_z * t24;
+        out_D_x[13] = p_z * t24 + (p_x * t26 + p_y * t25);
         out_D_x[14] = p_y * t27 - p_z * t28;
         out_D_x[15] = p_z * t29 - p_x * t27;
         out_D_x[16] = p_x * t28 - p_y * t29;
         out_D_x[17] = t29;
         out_D_x[18] = t28;
         out_D_x[19] = t27;
-        out_D_x[20] = p_x * t29 + p_y * t28 + p_z * t27;
+        out_D_x[20] = p_z * t27 + (p_x * t29 + p_y * t28);
     }
     if (out_D_p != NULL) {
         out_D_p[0] = t23;

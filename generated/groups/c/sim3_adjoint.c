@@ -14,7 +14,7 @@
  *   x: 8, Sim3 (qx, qy, qz, qw, x, y, z, scale), given
  *   out: 7 x 7 matrix
  *
- * Operations: 63
+ * Operations: 62
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -38,26 +38,26 @@ int liegen_groups_sim3_adjoint(
     const double x_z = x[6];
     const double x_scale = x[7];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = t0 * x_qx;
+    const double t6 = t2 * x_qw;
     const double t7 = t5 - t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 + t9;
     const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
+    const double t12 = 2.0 * x_qx;
     const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t14 = 1.0 - t3 - t13;
     const double t15 = x_qy * t2;
     const double t16 = x_qw * t12;
     const double t17 = t15 - t16;
     const double t18 = t8 - t9;
     const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
+    const double t20 = t1 - t13;
     out[0] = t4;
     out[1] = t7;
     out[2] = t10;
@@ -79,26 +79,26 @@ int liegen_groups_sim3_adjoint(
     out[18] = 0.0;
     out[19] = 0.0;
     out[20] = 0.0;
-    out[21] = x_y * t18 - x_z * t11;
-    out[22] = x_y * t19 - x_z * t14;
-    out[23] = x_y * t20 - x_z * t17;
-    out[24] = x_scale * t4;
-    out[25] = x_scale * t7;
-    out[26] = x_scale * t10;
+    out[21] = t18 * x_y - t11 * x_z;
+    out[22] = t19 * x_y - t14 * x_z;
+    out[23] = t20 * x_y - t17 * x_z;
+    out[24] = t4 * x_scale;
+    out[25] = t7 * x_scale;
+    out[26] = t10 * x_scale;
     out[27] = -x_x;
-    out[28] = x_z * t4 - x_x * t18;
-    out[29] = x_z * t7 - x_x * t19;
-    out[30] = x_z * t10 - x_x * t20;
-    out[31] = x_scale * t11;
-    out[32] = x_scale * t14;
-    out[33] = x_scale * t17;
+    out[28] = t4 * x_z - t18 * x_x;
+    out[29] = t7 * x_z - t19 * x_x;
+    out[30] = t10 * x_z - t20 * x_x;
+    out[31] = t11 * x_scale;
+    out[32] = t14 * x_scale;
+    out[33] = t17 * x_scale;
     out[34] = -x_y;
-    out[35] = x_x * t11 - x_y * t4;
-    out[36] = x_x * t14 - x_y * t7;
-    out[37] = x_x * t17 - x_y * t10;
-    out[38] = x_scale * t18;
-    out[39] = x_scale * t19;
-    out[40] = x_scale * t20;
+    out[35] = t11 * x_x - t4 * x_y;
+    out[36] = t14 * x_x - t7 * x_y;
+    out[37] = t17 * x_x - t10 * x_y;
+    out[38] = t18 * x_scale;
+    out[39] = t19 * x_scale;
+    out[40] = t20 * x_scale;
     out[41] = -x_z;
     out[42] = 0.0;
     out[43] = 0.0;

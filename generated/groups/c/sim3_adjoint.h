@@ -14,7 +14,7 @@
  *   x: 8, Sim3 (qx, qy, qz, qw, x, y, z, scale), given
  *   out: 7 x 7 matrix
  *
- * Operations: 63
+ * Operations: 62
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -22,6 +22,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_ADJOINT_H
 #define LIEGEN_GROUPS_SIM3_ADJOINT_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -38,6 +40,13 @@ extern "C" {
 int liegen_groups_sim3_adjoint(
     const double *x,
     double *out);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_adjoint_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

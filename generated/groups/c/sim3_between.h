@@ -21,7 +21,7 @@
  *   out_D_x: 7 x 7, derivative of out by the tangent of x
  *   out_D_y: 7 x 7, derivative of out by the tangent of y
  *
- * Operations: 75 (outputs only), 151 (with Jacobians)
+ * Operations: 74 (outputs only), 149 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -29,6 +29,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_BETWEEN_H
 #define LIEGEN_GROUPS_SIM3_BETWEEN_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -57,6 +59,16 @@ int liegen_groups_sim3_between(
     double *out,
     double *out_D_x,
     double *out_D_y);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_between_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -21,7 +21,7 @@
  *   out_D_x: 7 x 7, derivative of out by the tangent of x
  *   out_D_y: 7 x 7, derivative of out by the tangent of y
  *
- * Operations: 74 (outputs only), 150 (with Jacobians)
+ * Operations: 73 (outputs only), 148 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -54,27 +54,27 @@ int liegen_groups_sim3_compose_value(
     const double y_z = y[6];
     const double y_scale = y[7];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
+    const double t1 = 1.0 - x_qy * t0;
     const double t2 = x_qz * 2.0;
     const double t3 = x_qz * t2;
     const double t4 = x_qx * t0;
     const double t5 = x_qw * t2;
-    const double t6 = y_x * (1.0 - (t1 + t3)) + y_y * (t4 - t5);
-    const double t7 = x_qx * t2;
-    const double t8 = x_qw * t0;
+    const double t6 = x_qx * t2;
+    const double t7 = x_qw * t0;
+    const double t8 = y_z * (t6 + t7) + (y_x * (t1 - t3) + y_y * (t4 - t5));
     const double t9 = x_qx * 2.0;
     const double t10 = x_qx * t9;
-    const double t11 = y_x * (t4 + t5) + y_y * (1.0 - (t3 + t10));
+    const double t11 = y_x * (t4 + t5) + y_y * (1.0 - t3 - t10);
     const double t12 = x_qy * t2;
     const double t13 = x_qw * t9;
-    const double t14 = y_x * (t7 - t8) + y_y * (t12 + t13);
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
-    out[4] = x_x + x_scale * (t6 + y_z * (t7 + t8));
-    out[5] = x_y + x_scale * (t11 + y_z * (t12 - t13));
-    out[6] = x_z + x_scale * (t14 + y_z * (1.0 - (t1 + t10)));
+    const double t14 = y_z * (t1 - t10) + (y_x * (t6 - t7) + y_y * (t12 + t13));
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    out[4] = x_x + x_scale * t8;
+    out[5] = x_y + x_scale * (y_z * (t12 - t13) + t11);
+    out[6] = x_z + x_scale * t14;
     out[7] = x_scale * y_scale;
     return 0;
 }
@@ -105,25 +105,25 @@ int liegen_groups_sim3_compose(
     const double y_z = y[6];
     const double y_scale = y[7];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
+    const double t1 = 1.0 - x_qy * t0;
     const double t2 = x_qz * 2.0;
     const double t3 = x_qz * t2;
     const double t4 = x_qx * t0;
     const double t5 = x_qw * t2;
-    const double t6 = y_x * (1.0 - (t1 + t3)) + y_y * (t4 - t5);
-    const double t7 = x_qx * t2;
-    const double t8 = x_qw * t0;
+    const double t6 = x_qx * t2;
+    const double t7 = x_qw * t0;
+    const double t8 = y_z * (t6 + t7) + (y_x * (t1 - t3) + y_y * (t4 - t5));
     const double t9 = x_qx * 2.0;
     const double t10 = x_qx * t9;
-    const double t11 = y_x * (t4 + t5) + y_y * (1.0 - (t3 + t10));
-    const double t12 = x_qy * t2;
-    const double t13 = x_qw * t9;
-    const double t14 = y_x * (t7 - t8) + y_y * (t12 + t13);
+    const double t11 = x_qy * t2;
+    const double t12 = x_qw * t9;
+    const double t13 = y_x * (t4 + t5) + y_y * (1.0 - t3 - t10);
+    const double t14 = y_z * (t1 - t10) + (y_x * (t6 - t7) + y_y * (t11 + t12));
     const double t15 = y_qy * 2.0;
-    const double t16 = y_qy * t15;
+    const double t16 = 1.0 - y_qy * t15;
     const double t17 = y_qz * 2.0;
     const double t18 = y_qz * t17;
-    const double t19 = 1.0 - (t16 + t18);
+    const double t19 = t16 - t18;
     const double t20 = y_qx * t15;
     const double t21 = y_qw * t17;
     const double t22 = t20 + t21;
@@ -133,13 +133,13 @@ int liegen_groups_sim3_compose(
     const double t26 = t20 - t21;
     const double t27 = y_qx * 2.0;
     const double t28 = y_qx * t27;
-    const double t29 = 1.0 - (t18 + t28);
+    const double t29 = 1.0 - t18 - t28;
     const double t30 = y_qy * t17;
     const double t31 = y_qw * t27;
     const double t32 = t30 + t31;
     const double t33 = t23 + t24;
     const double t34 = t30 - t31;
-    const double t35 = 1.0 - (t16 + t28);
+    const double t35 = t16 - t28;
     const double t36 = 1.0 / y_scale;
     const double t37 = t25 * t36;
     const double t38 = t22 * t36;
@@ -150,13 +150,13 @@ int liegen_groups_sim3_compose(
     const double t43 = t35 * t36;
     const double t44 = t34 * t36;
     const double t45 = t33 * t36;
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
-    out[4] = x_x + x_scale * (t6 + y_z * (t7 + t8));
-    out[5] = x_y + x_scale * (t11 + y_z * (t12 - t13));
-    out[6] = x_z + x_scale * (t14 + y_z * (1.0 - (t1 + t10)));
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    out[4] = x_x + x_scale * t8;
+    out[5] = x_y + x_scale * (y_z * (t11 - t12) + t13);
+    out[6] = x_z + x_scale * t14;
     out[7] = x_scale * y_scale;
     if (out_D_x != NULL) {
         out_D_x[0] = t19;
@@ -186,21 +186,21 @@ int liegen_groups_sim3_compose(
         out_D_x[24] = t39;
         out_D_x[25] = t38;
         out_D_x[26] = t37;
-        out_D_x[27] = y_x * t39 + y_y * t38 + y_z * t37;
+        out_D_x[27] = y_z * t37 + (y_x * t39 + y_y * t38);
         out_D_x[28] = y_y * t40 - y_z * t41;
         out_D_x[29] = y_z * t42 - y_x * t40;
         out_D_x[30] = y_x * t41 - y_y * t42;
         out_D_x[31] = t42;
         out_D_x[32] = t41;
         out_D_x[33] = t40;
-        out_D_x[34] = y_x * t42 + y_y * t41 + y_z * t40;
+        out_D_x[34] = y_z * t40 + (y_x * t42 + y_y * t41);
         out_D_x[35] = y_y * t43 - y_z * t44;
         out_D_x[36] = y_z * t45 - y_x * t43;
         out_D_x[37] = y_x * t44 - y_y * t45;
         out_D_x[38] = t45;
         out_D_x[39] = t44;
         out_D_x[40] = t43;
-        out_D_x[41] = y_x * t45 + y_y * t44 + y_z * t43;
+        out_D_x[41] = y_z * t43 + (y_x * t45 + y_y * t44);
         out_D_x[42] = 0.0;
         out_D_x[43] = 0.0;
         out_D_x[44] = 0.0;

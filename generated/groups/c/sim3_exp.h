@@ -19,7 +19,7 @@
  *   out: 8, Sim3 (qx, qy, qz, qw, x, y, z, scale)
  *   out_D_d: 7 x 7, derivative of out by the tangent of d
  *
- * Operations: 171 (outputs only), 522 (with Jacobians)
+ * Operations: 170 (outputs only), 520 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -27,6 +27,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_EXP_H
 #define LIEGEN_GROUPS_SIM3_EXP_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -50,6 +52,14 @@ int liegen_groups_sim3_exp(
     const double *d,
     double *out,
     double *out_D_d);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_exp_batch(
+    ptrdiff_t n,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

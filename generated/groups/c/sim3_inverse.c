@@ -18,7 +18,7 @@
  *   out: 8, Sim3 (qx, qy, qz, qw, x, y, z, scale)
  *   out_D_x: 7 x 7, derivative of out by the tangent of x
  *
- * Operations: 46 (outputs only), 82 (with Jacobians)
+ * Operations: 45 (outputs only), 81 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -41,29 +41,29 @@ int liegen_groups_sim3_inverse_value(
     const double x_y = x[5];
     const double x_z = x[6];
     const double x_scale = x[7];
-    const double t0 = x_qy * (-2.0);
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * (-2.0);
-    const double t3 = x_qz * t2;
-    const double t4 = x_qx * t0;
-    const double t5 = x_qw * t2;
-    const double t6 = x_x * (-1.0 - (t1 + t3)) + x_y * (t4 + t5);
-    const double t7 = x_qw * t0;
-    const double t8 = x_qx * t2;
+    const double t0 = x_qz * 2.0;
+    const double t1 = x_qz * t0;
+    const double t2 = x_qy * 2.0;
+    const double t3 = 1.0 - x_qy * t2;
+    const double t4 = x_qx * t2;
+    const double t5 = x_qw * t0;
+    const double t6 = x_qw * t2;
+    const double t7 = x_qx * t0;
+    const double t8 = x_z * (t6 - t7) + (x_x * (t1 - t3) - x_y * (t4 + t5));
     const double t9 = 1.0 / x_scale;
-    const double t10 = x_qx * (-2.0);
+    const double t10 = x_qx * 2.0;
     const double t11 = x_qx * t10;
-    const double t12 = x_x * (t4 - t5) + x_y * (-1.0 - (t3 + t11));
-    const double t13 = x_qy * t2;
+    const double t12 = x_x * (t5 - t4) + x_y * (t11 + (t1 - 1.0));
+    const double t13 = x_qy * t0;
     const double t14 = x_qw * t10;
-    const double t15 = x_y * (t13 - t14) + x_x * (t7 + t8);
+    const double t15 = x_z * (t11 - t3) + (x_y * (t14 - t13) - x_x * (t6 + t7));
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = (t6 + x_z * (t8 - t7)) * t9;
-    out[5] = t9 * (t12 + x_z * (t13 + t14));
-    out[6] = t9 * (t15 + x_z * (-1.0 - (t1 + t11)));
+    out[4] = t8 * t9;
+    out[5] = t9 * (t12 - x_z * (t13 + t14));
+    out[6] = t9 * t15;
     out[7] = t9;
     return 0;
 }
@@ -84,34 +84,34 @@ int liegen_groups_sim3_inverse(
     const double x_z = x[6];
     const double x_scale = x[7];
     const double t0 = x_qy * (-2.0);
-    const double t1 = x_qy * t0;
+    const double t1 = -1.0 - x_qy * t0;
     const double t2 = x_qz * (-2.0);
     const double t3 = x_qz * t2;
-    const double t4 = -1.0 - (t1 + t3);
+    const double t4 = t1 - t3;
     const double t5 = x_qx * t0;
     const double t6 = x_qw * t2;
     const double t7 = t5 + t6;
-    const double t8 = x_qw * t0;
-    const double t9 = x_qx * t2;
-    const double t10 = t9 - t8;
+    const double t8 = x_qx * t2;
+    const double t9 = x_qw * t0;
+    const double t10 = t8 - t9;
     const double t11 = 1.0 / x_scale;
     const double t12 = t5 - t6;
-    const double t13 = x_qx * (-2.0);
+    const double t13 = x_qx * 2.0;
     const double t14 = x_qx * t13;
-    const double t15 = -1.0 - (t3 + t14);
+    const double t15 = t14 + (-1.0 - t3);
     const double t16 = x_qy * t2;
     const double t17 = x_qw * t13;
-    const double t18 = t16 + t17;
-    const double t19 = t16 - t17;
-    const double t20 = t8 + t9;
-    const double t21 = -1.0 - (t1 + t14);
+    const double t18 = t16 - t17;
+    const double t19 = t16 + t17;
+    const double t20 = t9 + t8;
+    const double t21 = t1 + t14;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = (x_x * t4 + x_y * t7 + x_z * t10) * t11;
-    out[5] = t11 * (x_x * t12 + x_y * t15 + x_z * t18);
-    out[6] = t11 * (x_y * t19 + x_x * t20 + x_z * t21);
+    out[4] = (x_z * t10 + (x_x * t4 + x_y * t7)) * t11;
+    out[5] = t11 * (x_z * t18 + (x_x * t12 + x_y * t15));
+    out[6] = t11 * (x_z * t21 + (x_y * t19 + x_x * t20));
     out[7] = t11;
     if (out_D_x != NULL) {
         out_D_x[0] = t4;
@@ -135,24 +135,24 @@ int liegen_groups_sim3_inverse(
         out_D_x[18] = 0.0;
         out_D_x[19] = 0.0;
         out_D_x[20] = 0.0;
-        out_D_x[21] = x_y * t10 - x_z * t7;
+        out_D_x[21] = x_y * t10 - t7 * x_z;
         out_D_x[22] = x_y * t18 - x_z * t15;
         out_D_x[23] = x_y * t21 - x_z * t19;
-        out_D_x[24] = x_scale * t4;
+        out_D_x[24] = t4 * x_scale;
         out_D_x[25] = x_scale * t12;
         out_D_x[26] = x_scale * t20;
         out_D_x[27] = x_x;
-        out_D_x[28] = x_z * t4 - x_x * t10;
+        out_D_x[28] = t4 * x_z - x_x * t10;
         out_D_x[29] = x_z * t12 - x_x * t18;
         out_D_x[30] = x_z * t20 - x_x * t21;
-        out_D_x[31] = x_scale * t7;
+        out_D_x[31] = t7 * x_scale;
         out_D_x[32] = x_scale * t15;
         out_D_x[33] = x_scale * t19;
         out_D_x[34] = x_y;
-        out_D_x[35] = x_x * t7 - x_y * t4;
+        out_D_x[35] = x_x * t7 - t4 * x_y;
         out_D_x[36] = x_x * t15 - x_y * t12;
         out_D_x[37] = x_x * t19 - x_y * t20;
-        out_D_x[38] = x_scale * t10;
+        out_D_x[38] = t10 * x_scale;
         out_D_x[39] = x_scale * t18;
         out_D_x[40] = x_scale * t21;
         out_D_x[41] = x_z;

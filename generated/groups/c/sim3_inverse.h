@@ -18,7 +18,7 @@
  *   out: 8, Sim3 (qx, qy, qz, qw, x, y, z, scale)
  *   out_D_x: 7 x 7, derivative of out by the tangent of x
  *
- * Operations: 46 (outputs only), 82 (with Jacobians)
+ * Operations: 45 (outputs only), 81 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -26,6 +26,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_INVERSE_H
 #define LIEGEN_GROUPS_SIM3_INVERSE_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -49,6 +51,14 @@ int liegen_groups_sim3_inverse(
     const double *x,
     double *out,
     double *out_D_x);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_inverse_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

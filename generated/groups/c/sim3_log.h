@@ -18,7 +18,7 @@
  *   out: 7, R7 (v0, v1, v2, v3, v4, v5, v6)
  *   out_D_x: 7 x 7, derivative of out by the tangent of x
  *
- * Operations: 221 (outputs only), 532 (with Jacobians)
+ * Operations: 221 (outputs only), 530 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -26,6 +26,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_LOG_H
 #define LIEGEN_GROUPS_SIM3_LOG_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -49,6 +51,14 @@ int liegen_groups_sim3_log(
     const double *x,
     double *out,
     double *out_D_x);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_log_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -22,7 +22,7 @@
  *   out_D_x: 3 x 7, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 46 (outputs only), 59 (with Jacobians)
+ * Operations: 45 (outputs only), 57 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -49,28 +49,28 @@ int liegen_groups_sim3_transform_to_value(
     const double p_x = p[0];
     const double p_y = p[1];
     const double p_z = p[2];
-    const double t0 = x_qy * (-2.0);
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * (-2.0);
-    const double t3 = x_qz * t2;
-    const double t4 = p_x - x_x;
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
-    const double t7 = p_y - x_y;
-    const double t8 = (1.0 + (t1 + t3)) * t4 - (t5 + t6) * t7;
-    const double t9 = x_qw * t0;
-    const double t10 = x_qx * t2;
-    const double t11 = p_z - x_z;
+    const double t0 = 2.0 * x_qz;
+    const double t1 = x_qz * t0;
+    const double t2 = x_qy * 2.0;
+    const double t3 = 1.0 - x_qy * t2;
+    const double t4 = x_x - p_x;
+    const double t5 = t2 * x_qx;
+    const double t6 = t0 * x_qw;
+    const double t7 = x_y - p_y;
+    const double t8 = t2 * x_qw;
+    const double t9 = t0 * x_qx;
+    const double t10 = x_z - p_z;
+    const double t11 = (t8 - t9) * t10 + ((t1 - t3) * t4 - (t5 + t6) * t7);
     const double t12 = 1.0 / x_scale;
-    const double t13 = x_qx * (-2.0);
+    const double t13 = 2.0 * x_qx;
     const double t14 = x_qx * t13;
-    const double t15 = t4 * (t6 - t5) + t7 * (1.0 + (t3 + t14));
-    const double t16 = x_qy * t2;
+    const double t15 = t4 * (t6 - t5) + t7 * (t14 + (t1 - 1.0));
+    const double t16 = x_qy * t0;
     const double t17 = x_qw * t13;
-    const double t18 = t7 * (t17 - t16) - t4 * (t9 + t10);
-    out[0] = (t8 + (t9 - t10) * t11) * t12;
-    out[1] = t12 * (t15 - t11 * (t16 + t17));
-    out[2] = t12 * (t18 + t11 * (1.0 + (t1 + t14)));
+    const double t18 = t10 * (t14 - t3) + (t7 * (t17 - t16) - t4 * (t8 + t9));
+    out[0] = t11 * t12;
+    out[1] = t12 * (t15 - t10 * (t16 + t17));
+    out[2] = t12 * t18;
     return 0;
 }
 
@@ -94,74 +94,73 @@ int liegen_groups_sim3_transform_to(
     const double p_x = p[0];
     const double p_y = p[1];
     const double p_z = p[2];
-    const double t0 = x_qz * (-2.0);
-    const double t1 = x_qx * (-2.0);
-    const double t2 = x_qy * t0;
-    const double t3 = x_qw * t1;
+    const double t0 = 2.0 * x_qz;
+    const double t1 = x_qy * 2.0;
+    const double t2 = t0 * x_qw;
+    const double t3 = t1 * x_qx;
     const double t4 = t3 - t2;
-    const double t5 = t2 + t3;
-    const double t6 = x_qy * (-2.0);
-    const double t7 = x_qw * t0;
-    const double t8 = x_qx * t6;
-    const double t9 = t8 + t7;
-    const double t10 = t7 - t8;
-    const double t11 = x_qx * t1;
-    const double t12 = x_qz * t0;
-    const double t13 = x_qy * t6;
-    const double t14 = x_qx * t0;
-    const double t15 = x_qw * t6;
-    const double t16 = 1.0 / x_scale;
-    const double t17 = -t16;
-    const double t18 = t15 + t14;
-    const double t19 = p_x - x_x;
-    const double t20 = p_y - x_y;
-    const double t21 = 1.0 + (t12 + t11);
-    const double t22 = t15 - t14;
-    const double t23 = 1.0 + (t13 + t12);
-    const double t24 = 1.0 + (t13 + t11);
-    const double t25 = p_z - x_z;
-    const double t26 = t16 * (t19 * t18 - t20 * t4 - t25 * t24);
-    const double t27 = t16 * (t25 * t5 - (t19 * t10 + t20 * t21));
-    const double t28 = (t9 * t20 - t23 * t19 - t22 * t25) * t16;
+    const double t5 = t3 + t2;
+    const double t6 = 1.0 - x_qy * t1;
+    const double t7 = 2.0 * x_qx;
+    const double t8 = x_qz * t0;
+    const double t9 = x_qx * t7;
+    const double t10 = 1.0 - t8 - t9;
+    const double t11 = t6 - t8;
+    const double t12 = t6 - t9;
+    const double t13 = t1 * x_qw;
+    const double t14 = x_qw * t7;
+    const double t15 = t0 * x_qx;
+    const double t16 = x_qy * t0;
+    const double t17 = t13 + t15;
+    const double t18 = x_x - p_x;
+    const double t19 = t16 - t14;
+    const double t20 = x_y - p_y;
+    const double t21 = t16 + t14;
+    const double t22 = t15 - t13;
+    const double t23 = x_z - p_z;
+    const double t24 = 1.0 / x_scale;
+    const double t25 = t24 * (t23 * t12 + (t20 * t19 + t18 * t17));
+    const double t26 = t24 * (t23 * t21 + (t18 * t4 + t20 * t10));
+    const double t27 = (t22 * t23 + (t11 * t18 + t5 * t20)) * t24;
+    const double t28 = -t25;
     const double t29 = -t26;
     const double t30 = -t27;
-    const double t31 = -t28;
-    out[0] = t31;
-    out[1] = t30;
-    out[2] = t29;
+    out[0] = t30;
+    out[1] = t29;
+    out[2] = t28;
     if (out_D_x != NULL) {
         out_D_x[0] = 0.0;
-        out_D_x[1] = t26;
-        out_D_x[2] = t30;
+        out_D_x[1] = t25;
+        out_D_x[2] = t29;
         out_D_x[3] = -1.0;
         out_D_x[4] = 0.0;
         out_D_x[5] = 0.0;
-        out_D_x[6] = t28;
-        out_D_x[7] = t29;
+        out_D_x[6] = t27;
+        out_D_x[7] = t28;
         out_D_x[8] = 0.0;
-        out_D_x[9] = t28;
+        out_D_x[9] = t27;
         out_D_x[10] = 0.0;
         out_D_x[11] = -1.0;
         out_D_x[12] = 0.0;
-        out_D_x[13] = t27;
-        out_D_x[14] = t27;
-        out_D_x[15] = t31;
+        out_D_x[13] = t26;
+        out_D_x[14] = t26;
+        out_D_x[15] = t30;
         out_D_x[16] = 0.0;
         out_D_x[17] = 0.0;
         out_D_x[18] = 0.0;
         out_D_x[19] = -1.0;
-        out_D_x[20] = t26;
+        out_D_x[20] = t25;
     }
     if (out_D_p != NULL) {
-        out_D_p[0] = t23 * t16;
-        out_D_p[1] = t9 * t17;
-        out_D_p[2] = t22 * t16;
-        out_D_p[3] = t16 * t10;
-        out_D_p[4] = t16 * t21;
-        out_D_p[5] = t5 * t17;
-        out_D_p[6] = t18 * t17;
-        out_D_p[7] = t16 * t4;
-        out_D_p[8] = t16 * t24;
+        out_D_p[0] = t11 * t24;
+        out_D_p[1] = t5 * t24;
+        out_D_p[2] = t22 * t24;
+        out_D_p[3] = t24 * t4;
+        out_D_p[4] = t24 * t10;
+        out_D_p[5] = t24 * t21;
+        out_D_p[6] = t24 * t17;
+        out_D_p[7] = t24 * t19;
+        out_D_p[8] = t24 * t12;
     }
     return 0;
 }

@@ -22,7 +22,7 @@
  *   out_D_x: 3 x 7, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 46 (outputs only), 59 (with Jacobians)
+ * Operations: 45 (outputs only), 57 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -30,6 +30,8 @@
  */
 #ifndef LIEGEN_GROUPS_SIM3_TRANSFORM_TO_H
 #define LIEGEN_GROUPS_SIM3_TRANSFORM_TO_H
+
+#include "liegen_groups_batch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,6 +60,16 @@ int liegen_groups_sim3_transform_to(
     double *out,
     double *out_D_x,
     double *out_D_p);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_sim3_transform_to_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in p,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_p,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -87,6 +87,36 @@
 #   gal3_Jl: out = Gal3.Jl(d)
 #   gal3_Jr_inv: out = Gal3.Jr_inv(d)
 #   gal3_Jl_inv: out = Gal3.Jl_inv(d)
+#   sim2_compose: out = x.compose(y)
+#   sim2_inverse: out = x.inverse()
+#   sim2_between: out = x.between(y)
+#   sim2_act: out = x.transform_from(p)
+#   sim2_transform_to: out = x.transform_to(p)
+#   sim2_exp: out = Sim2.exp(d)
+#   sim2_log: out = x.log()
+#   sim2_retract: out = x.retract(d)
+#   sim2_local: out = x.local(y)
+#   sim2_adjoint: out = x.adjoint()
+#   sim2_ad: out = Sim2.ad(d)
+#   sim2_Jr: out = Sim2.Jr(d)
+#   sim2_Jl: out = Sim2.Jl(d)
+#   sim2_Jr_inv: out = Sim2.Jr_inv(d)
+#   sim2_Jl_inv: out = Sim2.Jl_inv(d)
+#   sim3_compose: out = x.compose(y)
+#   sim3_inverse: out = x.inverse()
+#   sim3_between: out = x.between(y)
+#   sim3_act: out = x.transform_from(p)
+#   sim3_transform_to: out = x.transform_to(p)
+#   sim3_exp: out = Sim3.exp(d)
+#   sim3_log: out = x.log()
+#   sim3_retract: out = x.retract(d)
+#   sim3_local: out = x.local(y)
+#   sim3_adjoint: out = x.adjoint()
+#   sim3_ad: out = Sim3.ad(d)
+#   sim3_Jr: out = Sim3.Jr(d)
+#   sim3_Jl: out = Sim3.Jl(d)
+#   sim3_Jr_inv: out = Sim3.Jr_inv(d)
+#   sim3_Jl_inv: out = Sim3.Jl_inv(d)
 #
 # Conventions:
 #   SO2: stored (cos, sin); tangent: angle [rad]; x.retract(d) = x exp(d)
@@ -104,6 +134,12 @@
 #   Gal3: stored quaternion (x, y, z, w), position (x, y, z), velocity (x, y, z), time; tangent: rotation
 #       [rad], position [m], velocity [m/s], time [s]; x.retract(d) = x exp(d)
 #   R10: stored as it is; tangent: the same; x.retract(d) = x + d
+#   Sim2: stored (cos, sin), translation (x, y), scale; x p = scale R p + translation; tangent: x [m], y
+#       [m], angle [rad], log of the scale; x.retract(d) = x exp(d)
+#   R4: stored as it is; tangent: the same; x.retract(d) = x + d
+#   Sim3: stored quaternion (x, y, z, w), translation (x, y, z), scale; x p = scale R p + translation;
+#       tangent: rotation [rad], translation [m], log of the scale; x.retract(d) = x exp(d)
+#   R7: stored as it is; tangent: the same; x.retract(d) = x + d
 #
 # Shapes and units: at the top of each function's file.
 #
@@ -138,64 +174,94 @@
 #   se2_Jl: 39
 #   se2_Jr_inv: 38
 #   se2_Jl_inv: 38
-#   so3_compose: 28, with Jacobians 52
-#   so3_inverse: 3, with Jacobians 27
-#   so3_between: 28, with Jacobians 52
-#   so3_act: 39, with Jacobians 66
-#   so3_transform_to: 39, with Jacobians 42
-#   so3_exp: 16, with Jacobians 61
+#   so3_compose: 28, with Jacobians 51
+#   so3_inverse: 3, with Jacobians 26
+#   so3_between: 28, with Jacobians 51
+#   so3_act: 38, with Jacobians 65
+#   so3_transform_to: 38, with Jacobians 41
+#   so3_exp: 16, with Jacobians 60
 #   so3_log: 33, with Jacobians 75
-#   so3_retract: 44, with Jacobians 113
+#   so3_retract: 44, with Jacobians 111
 #   so3_local: 61, with Jacobians 112
-#   so3_adjoint: 24
+#   so3_adjoint: 23
 #   so3_ad: 3
 #   so3_Jr: 57
 #   so3_Jl: 57
 #   so3_Jr_inv: 54
 #   so3_Jl_inv: 54
-#   se3_compose: 61, with Jacobians 112
-#   se3_inverse: 33, with Jacobians 84
+#   se3_compose: 61, with Jacobians 111
+#   se3_inverse: 33, with Jacobians 83
 #   se3_between: 61, with Jacobians 112
-#   se3_act: 42, with Jacobians 69
-#   se3_transform_to: 42, with Jacobians 45
-#   se3_exp: 80, with Jacobians 168
-#   se3_log: 90, with Jacobians 157
-#   se3_retract: 141, with Jacobians 280
-#   se3_local: 151, with Jacobians 236
-#   se3_adjoint: 51
+#   se3_act: 41, with Jacobians 68
+#   se3_transform_to: 41, with Jacobians 44
+#   se3_exp: 79, with Jacobians 166
+#   se3_log: 90, with Jacobians 156
+#   se3_retract: 140, with Jacobians 277
+#   se3_local: 150, with Jacobians 235
+#   se3_adjoint: 50
 #   se3_ad: 6
-#   se3_Jr: 149
-#   se3_Jl: 149
-#   se3_Jr_inv: 126
-#   se3_Jl_inv: 126
-#   se23_compose: 88, with Jacobians 166
-#   se23_inverse: 57, with Jacobians 111
-#   se23_between: 88, with Jacobians 166
-#   se23_exp: 95, with Jacobians 242
-#   se23_log: 105, with Jacobians 224
-#   se23_retract: 183, with Jacobians 408
-#   se23_local: 193, with Jacobians 339
-#   se23_adjoint: 78
+#   se3_Jr: 148
+#   se3_Jl: 148
+#   se3_Jr_inv: 125
+#   se3_Jl_inv: 125
+#   se23_compose: 87, with Jacobians 164
+#   se23_inverse: 56, with Jacobians 110
+#   se23_between: 87, with Jacobians 166
+#   se23_exp: 94, with Jacobians 236
+#   se23_log: 105, with Jacobians 218
+#   se23_retract: 181, with Jacobians 400
+#   se23_local: 191, with Jacobians 332
+#   se23_adjoint: 77
 #   se23_ad: 9
-#   se23_Jr: 208
-#   se23_Jl: 208
-#   se23_Jr_inv: 178
-#   se23_Jl_inv: 178
-#   gal3_compose: 95, with Jacobians 198
-#   gal3_inverse: 64, with Jacobians 131
-#   gal3_between: 95, with Jacobians 198
-#   gal3_exp: 153, with Jacobians 417
-#   gal3_log: 129, with Jacobians 309
-#   gal3_retract: 248, with Jacobians 615
-#   gal3_local: 224, with Jacobians 432
-#   gal3_adjoint: 94
+#   se23_Jr: 203
+#   se23_Jl: 203
+#   se23_Jr_inv: 173
+#   se23_Jl_inv: 173
+#   gal3_compose: 94, with Jacobians 196
+#   gal3_inverse: 63, with Jacobians 131
+#   gal3_between: 94, with Jacobians 198
+#   gal3_exp: 152, with Jacobians 407
+#   gal3_log: 129, with Jacobians 300
+#   gal3_retract: 246, with Jacobians 603
+#   gal3_local: 222, with Jacobians 421
+#   gal3_adjoint: 93
 #   gal3_ad: 10
-#   gal3_Jr: 371
-#   gal3_Jl: 371
-#   gal3_Jr_inv: 254
-#   gal3_Jl_inv: 254
+#   gal3_Jr: 365
+#   gal3_Jl: 365
+#   gal3_Jr_inv: 245
+#   gal3_Jl_inv: 245
+#   sim2_compose: 17, with Jacobians 30
+#   sim2_inverse: 10, with Jacobians 15
+#   sim2_between: 18, with Jacobians 31
+#   sim2_act: 10, with Jacobians 20
+#   sim2_transform_to: 10, with Jacobians 16
+#   sim2_exp: 141, with Jacobians 309
+#   sim2_log: 161, with Jacobians 329
+#   sim2_retract: 158, with Jacobians 338
+#   sim2_local: 179, with Jacobians 358
+#   sim2_adjoint: 5
+#   sim2_ad: 3
+#   sim2_Jr: 233
+#   sim2_Jl: 232
+#   sim2_Jr_inv: 233
+#   sim2_Jl_inv: 233
+#   sim3_compose: 73, with Jacobians 148
+#   sim3_inverse: 45, with Jacobians 81
+#   sim3_between: 74, with Jacobians 149
+#   sim3_act: 44, with Jacobians 95
+#   sim3_transform_to: 45, with Jacobians 57
+#   sim3_exp: 170, with Jacobians 520
+#   sim3_log: 221, with Jacobians 530
+#   sim3_retract: 243, with Jacobians 667
+#   sim3_local: 295, with Jacobians 653
+#   sim3_adjoint: 62
+#   sim3_ad: 6
+#   sim3_Jr: 437
+#   sim3_Jl: 436
+#   sim3_Jr_inv: 375
+#   sim3_Jl_inv: 375
 #
-# Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
+# Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
 # Generated by liegen. This code is free: use, change and ship it for any purpose, without conditions.
@@ -387,6 +453,72 @@ from ._gal3_Jr import gal3_Jr as gal3_Jr
 from ._gal3_Jl import gal3_Jl as gal3_Jl
 from ._gal3_Jr_inv import gal3_Jr_inv as gal3_Jr_inv
 from ._gal3_Jl_inv import gal3_Jl_inv as gal3_Jl_inv
+from ._sim2_compose import Sim2ComposeJacobians as Sim2ComposeJacobians
+from ._sim2_compose import sim2_compose as sim2_compose
+from ._sim2_compose import sim2_compose_jacobians as sim2_compose_jacobians
+from ._sim2_inverse import Sim2InverseJacobians as Sim2InverseJacobians
+from ._sim2_inverse import sim2_inverse as sim2_inverse
+from ._sim2_inverse import sim2_inverse_jacobians as sim2_inverse_jacobians
+from ._sim2_between import Sim2BetweenJacobians as Sim2BetweenJacobians
+from ._sim2_between import sim2_between as sim2_between
+from ._sim2_between import sim2_between_jacobians as sim2_between_jacobians
+from ._sim2_act import Sim2ActJacobians as Sim2ActJacobians
+from ._sim2_act import sim2_act as sim2_act
+from ._sim2_act import sim2_act_jacobians as sim2_act_jacobians
+from ._sim2_transform_to import Sim2TransformToJacobians as Sim2TransformToJacobians
+from ._sim2_transform_to import sim2_transform_to as sim2_transform_to
+from ._sim2_transform_to import sim2_transform_to_jacobians as sim2_transform_to_jacobians
+from ._sim2_exp import Sim2ExpJacobians as Sim2ExpJacobians
+from ._sim2_exp import sim2_exp as sim2_exp
+from ._sim2_exp import sim2_exp_jacobians as sim2_exp_jacobians
+from ._sim2_log import Sim2LogJacobians as Sim2LogJacobians
+from ._sim2_log import sim2_log as sim2_log
+from ._sim2_log import sim2_log_jacobians as sim2_log_jacobians
+from ._sim2_retract import Sim2RetractJacobians as Sim2RetractJacobians
+from ._sim2_retract import sim2_retract as sim2_retract
+from ._sim2_retract import sim2_retract_jacobians as sim2_retract_jacobians
+from ._sim2_local import Sim2LocalJacobians as Sim2LocalJacobians
+from ._sim2_local import sim2_local as sim2_local
+from ._sim2_local import sim2_local_jacobians as sim2_local_jacobians
+from ._sim2_adjoint import sim2_adjoint as sim2_adjoint
+from ._sim2_ad import sim2_ad as sim2_ad
+from ._sim2_Jr import sim2_Jr as sim2_Jr
+from ._sim2_Jl import sim2_Jl as sim2_Jl
+from ._sim2_Jr_inv import sim2_Jr_inv as sim2_Jr_inv
+from ._sim2_Jl_inv import sim2_Jl_inv as sim2_Jl_inv
+from ._sim3_compose import Sim3ComposeJacobians as Sim3ComposeJacobians
+from ._sim3_compose import sim3_compose as sim3_compose
+from ._sim3_compose import sim3_compose_jacobians as sim3_compose_jacobians
+from ._sim3_inverse import Sim3InverseJacobians as Sim3InverseJacobians
+from ._sim3_inverse import sim3_inverse as sim3_inverse
+from ._sim3_inverse import sim3_inverse_jacobians as sim3_inverse_jacobians
+from ._sim3_between import Sim3BetweenJacobians as Sim3BetweenJacobians
+from ._sim3_between import sim3_between as sim3_between
+from ._sim3_between import sim3_between_jacobians as sim3_between_jacobians
+from ._sim3_act import Sim3ActJacobians as Sim3ActJacobians
+from ._sim3_act import sim3_act as sim3_act
+from ._sim3_act import sim3_act_jacobians as sim3_act_jacobians
+from ._sim3_transform_to import Sim3TransformToJacobians as Sim3TransformToJacobians
+from ._sim3_transform_to import sim3_transform_to as sim3_transform_to
+from ._sim3_transform_to import sim3_transform_to_jacobians as sim3_transform_to_jacobians
+from ._sim3_exp import Sim3ExpJacobians as Sim3ExpJacobians
+from ._sim3_exp import sim3_exp as sim3_exp
+from ._sim3_exp import sim3_exp_jacobians as sim3_exp_jacobians
+from ._sim3_log import Sim3LogJacobians as Sim3LogJacobians
+from ._sim3_log import sim3_log as sim3_log
+from ._sim3_log import sim3_log_jacobians as sim3_log_jacobians
+from ._sim3_retract import Sim3RetractJacobians as Sim3RetractJacobians
+from ._sim3_retract import sim3_retract as sim3_retract
+from ._sim3_retract import sim3_retract_jacobians as sim3_retract_jacobians
+from ._sim3_local import Sim3LocalJacobians as Sim3LocalJacobians
+from ._sim3_local import sim3_local as sim3_local
+from ._sim3_local import sim3_local_jacobians as sim3_local_jacobians
+from ._sim3_adjoint import sim3_adjoint as sim3_adjoint
+from ._sim3_ad import sim3_ad as sim3_ad
+from ._sim3_Jr import sim3_Jr as sim3_Jr
+from ._sim3_Jl import sim3_Jl as sim3_Jl
+from ._sim3_Jr_inv import sim3_Jr_inv as sim3_Jr_inv
+from ._sim3_Jl_inv import sim3_Jl_inv as sim3_Jl_inv
 
 __all__ = [
     "So2ComposeJacobians",
@@ -575,4 +707,70 @@ __all__ = [
     "gal3_Jl",
     "gal3_Jr_inv",
     "gal3_Jl_inv",
+    "Sim2ComposeJacobians",
+    "sim2_compose",
+    "sim2_compose_jacobians",
+    "Sim2InverseJacobians",
+    "sim2_inverse",
+    "sim2_inverse_jacobians",
+    "Sim2BetweenJacobians",
+    "sim2_between",
+    "sim2_between_jacobians",
+    "Sim2ActJacobians",
+    "sim2_act",
+    "sim2_act_jacobians",
+    "Sim2TransformToJacobians",
+    "sim2_transform_to",
+    "sim2_transform_to_jacobians",
+    "Sim2ExpJacobians",
+    "sim2_exp",
+    "sim2_exp_jacobians",
+    "Sim2LogJacobians",
+    "sim2_log",
+    "sim2_log_jacobians",
+    "Sim2RetractJacobians",
+    "sim2_retract",
+    "sim2_retract_jacobians",
+    "Sim2LocalJacobians",
+    "sim2_local",
+    "sim2_local_jacobians",
+    "sim2_adjoint",
+    "sim2_ad",
+    "sim2_Jr",
+    "sim2_Jl",
+    "sim2_Jr_inv",
+    "sim2_Jl_inv",
+    "Sim3ComposeJacobians",
+    "sim3_compose",
+    "sim3_compose_jacobians",
+    "Sim3InverseJacobians",
+    "sim3_inverse",
+    "sim3_inverse_jacobians",
+    "Sim3BetweenJacobians",
+    "sim3_between",
+    "sim3_between_jacobians",
+    "Sim3ActJacobians",
+    "sim3_act",
+    "sim3_act_jacobians",
+    "Sim3TransformToJacobians",
+    "sim3_transform_to",
+    "sim3_transform_to_jacobians",
+    "Sim3ExpJacobians",
+    "sim3_exp",
+    "sim3_exp_jacobians",
+    "Sim3LogJacobians",
+    "sim3_log",
+    "sim3_log_jacobians",
+    "Sim3RetractJacobians",
+    "sim3_retract",
+    "sim3_retract_jacobians",
+    "Sim3LocalJacobians",
+    "sim3_local",
+    "sim3_local_jacobians",
+    "sim3_adjoint",
+    "sim3_ad",
+    "sim3_Jr",
+    "sim3_Jl",
+    "sim3_Jr_inv",
+    "sim3_Jl_inv",
 ]

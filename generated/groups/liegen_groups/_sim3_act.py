@@ -21,7 +21,7 @@
 #   out_D_x: 3 x 7, derivative of out by the tangent of x
 #   out_D_p: 3 x 3, derivative of out by the tangent of p
 #
-# Operations: 45 (outputs only), 96 (with Jacobians)
+# Operations: 44 (outputs only), 95 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -89,49 +89,49 @@ def _value(x: Array, p: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_scale = x
     p_x, p_y, p_z = p
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
-    t2 = x_qz * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = 2.0 * x_qz
     t3 = x_qz * t2
-    t4 = x_qx * t0
-    t5 = x_qw * t2
-    t6 = p_x * (1.0 - (t1 + t3)) + p_y * (t4 - t5)
-    t7 = x_qx * t2
-    t8 = x_qw * t0
-    t9 = x_qx * 2.0
+    t4 = t0 * x_qx
+    t5 = t2 * x_qw
+    t6 = t2 * x_qx
+    t7 = t0 * x_qw
+    t8 = p_z * (t6 + t7) + (p_x * (t1 - t3) + p_y * (t4 - t5))
+    t9 = 2.0 * x_qx
     t10 = x_qx * t9
-    t11 = p_x * (t4 + t5) + p_y * (1.0 - (t3 + t10))
+    t11 = p_x * (t4 + t5) + p_y * (1.0 - t3 - t10)
     t12 = x_qy * t2
     t13 = x_qw * t9
-    t14 = p_x * (t7 - t8) + p_y * (t12 + t13)
-    out[0] = x_x + x_scale * (t6 + p_z * (t7 + t8))
-    out[1] = x_y + x_scale * (t11 + p_z * (t12 - t13))
-    out[2] = x_z + x_scale * (t14 + p_z * (1.0 - (t1 + t10)))
+    t14 = p_z * (t1 - t10) + (p_x * (t6 - t7) + p_y * (t12 + t13))
+    out[0] = x_x + x_scale * t8
+    out[1] = x_y + x_scale * (p_z * (t12 - t13) + t11)
+    out[2] = x_z + x_scale * t14
 
 
 def _jacobians(x: Array, p: Array, out: Array, out_D_x: Array, out_D_p: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_scale = x
     p_x, p_y, p_z = p
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
-    t2 = x_qz * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = 2.0 * x_qz
     t3 = x_qz * t2
-    t4 = 1.0 - (t1 + t3)
-    t5 = x_qx * t0
-    t6 = x_qw * t2
+    t4 = t1 - t3
+    t5 = t0 * x_qx
+    t6 = t2 * x_qw
     t7 = t5 - t6
-    t8 = x_qx * t2
-    t9 = x_qw * t0
+    t8 = t2 * x_qx
+    t9 = t0 * x_qw
     t10 = t8 + t9
     t11 = t5 + t6
-    t12 = x_qx * 2.0
+    t12 = 2.0 * x_qx
     t13 = x_qx * t12
-    t14 = 1.0 - (t3 + t13)
+    t14 = 1.0 - t3 - t13
     t15 = x_qy * t2
     t16 = x_qw * t12
     t17 = t15 - t16
     t18 = t8 - t9
     t19 = t15 + t16
-    t20 = 1.0 - (t1 + t13)
+    t20 = t1 - t13
     t21 = x_scale * t10
     t22 = x_scale * t7
     t23 = x_scale * t4
@@ -141,30 +141,30 @@ def _jacobians(x: Array, p: Array, out: Array, out_D_x: Array, out_D_p: Array) -
     t27 = x_scale * t20
     t28 = x_scale * t19
     t29 = x_scale * t18
-    out[0] = x_x + x_scale * (p_x * t4 + p_y * t7 + p_z * t10)
-    out[1] = x_y + x_scale * (p_x * t11 + p_y * t14 + p_z * t17)
-    out[2] = x_z + x_scale * (p_x * t18 + p_y * t19 + p_z * t20)
+    out[0] = x_x + x_scale * (p_z * t10 + (p_x * t4 + p_y * t7))
+    out[1] = x_y + x_scale * (p_z * t17 + (p_x * t11 + p_y * t14))
+    out[2] = x_z + x_scale * (p_z * t20 + (p_x * t18 + p_y * t19))
     out_D_x[0, 0] = p_y * t21 - p_z * t22
     out_D_x[0, 1] = p_z * t23 - p_x * t21
     out_D_x[0, 2] = p_x * t22 - p_y * t23
     out_D_x[0, 3] = t23
     out_D_x[0, 4] = t22
     out_D_x[0, 5] = t21
-    out_D_x[0, 6] = p_x * t23 + p_y * t22 + p_z * t21
+    out_D_x[0, 6] = p_z * t21 + (p_x * t23 + p_y * t22)
     out_D_x[1, 0] = p_y * t24 - p_z * t25
     out_D_x[1, 1] = p_z * t26 - p_x * t24
     out_D_x[1, 2] = p_x * t25 - p_y * t26
     out_D_x[1, 3] = t26
     out_D_x[1, 4] = t25
     out_D_x[1, 5] = t24
-    out_D_x[1, 6] = p_x * t26 + p_y * t25 + p_z * t24
+    out_D_x[1, 6] = p_z * t24 + (p_x * t26 + p_y * t25)
     out_D_x[2, 0] = p_y * t27 - p_z * t28
     out_D_x[2, 1] = p_z * t29 - p_x * t27
     out_D_x[2, 2] = p_x * t28 - p_y * t29
     out_D_x[2, 3] = t29
     out_D_x[2, 4] = t28
     out_D_x[2, 5] = t27
-    out_D_x[2, 6] = p_x * t29 + p_y * t28 + p_z * t27
+    out_D_x[2, 6] = p_z * t27 + (p_x * t29 + p_y * t28)
     out_D_p[0, 0] = t23
     out_D_p[0, 1] = t22
     out_D_p[0, 2] = t21

@@ -20,7 +20,7 @@
 #   out_D_x: 7 x 7, derivative of out by the tangent of x
 #   out_D_y: 7 x 7, derivative of out by the tangent of y
 #
-# Operations: 74 (outputs only), 150 (with Jacobians)
+# Operations: 73 (outputs only), 148 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -88,27 +88,27 @@ def _value(x: Array, y: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_scale = x
     y_qx, y_qy, y_qz, y_qw, y_x, y_y, y_z, y_scale = y
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
+    t1 = 1.0 - x_qy * t0
     t2 = x_qz * 2.0
     t3 = x_qz * t2
     t4 = x_qx * t0
     t5 = x_qw * t2
-    t6 = y_x * (1.0 - (t1 + t3)) + y_y * (t4 - t5)
-    t7 = x_qx * t2
-    t8 = x_qw * t0
+    t6 = x_qx * t2
+    t7 = x_qw * t0
+    t8 = y_z * (t6 + t7) + (y_x * (t1 - t3) + y_y * (t4 - t5))
     t9 = x_qx * 2.0
     t10 = x_qx * t9
-    t11 = y_x * (t4 + t5) + y_y * (1.0 - (t3 + t10))
+    t11 = y_x * (t4 + t5) + y_y * (1.0 - t3 - t10)
     t12 = x_qy * t2
     t13 = x_qw * t9
-    t14 = y_x * (t7 - t8) + y_y * (t12 + t13)
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz
-    out[4] = x_x + x_scale * (t6 + y_z * (t7 + t8))
-    out[5] = x_y + x_scale * (t11 + y_z * (t12 - t13))
-    out[6] = x_z + x_scale * (t14 + y_z * (1.0 - (t1 + t10)))
+    t14 = y_z * (t1 - t10) + (y_x * (t6 - t7) + y_y * (t12 + t13))
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz))
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy)
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz
+    out[4] = x_x + x_scale * t8
+    out[5] = x_y + x_scale * (y_z * (t12 - t13) + t11)
+    out[6] = x_z + x_scale * t14
     out[7] = x_scale * y_scale
 
 
@@ -116,25 +116,25 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_scale = x
     y_qx, y_qy, y_qz, y_qw, y_x, y_y, y_z, y_scale = y
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
+    t1 = 1.0 - x_qy * t0
     t2 = x_qz * 2.0
     t3 = x_qz * t2
     t4 = x_qx * t0
     t5 = x_qw * t2
-    t6 = y_x * (1.0 - (t1 + t3)) + y_y * (t4 - t5)
-    t7 = x_qx * t2
-    t8 = x_qw * t0
+    t6 = x_qx * t2
+    t7 = x_qw * t0
+    t8 = y_z * (t6 + t7) + (y_x * (t1 - t3) + y_y * (t4 - t5))
     t9 = x_qx * 2.0
     t10 = x_qx * t9
-    t11 = y_x * (t4 + t5) + y_y * (1.0 - (t3 + t10))
-    t12 = x_qy * t2
-    t13 = x_qw * t9
-    t14 = y_x * (t7 - t8) + y_y * (t12 + t13)
+    t11 = x_qy * t2
+    t12 = x_qw * t9
+    t13 = y_x * (t4 + t5) + y_y * (1.0 - t3 - t10)
+    t14 = y_z * (t1 - t10) + (y_x * (t6 - t7) + y_y * (t11 + t12))
     t15 = y_qy * 2.0
-    t16 = y_qy * t15
+    t16 = 1.0 - y_qy * t15
     t17 = y_qz * 2.0
     t18 = y_qz * t17
-    t19 = 1.0 - (t16 + t18)
+    t19 = t16 - t18
     t20 = y_qx * t15
     t21 = y_qw * t17
     t22 = t20 + t21
@@ -144,13 +144,13 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     t26 = t20 - t21
     t27 = y_qx * 2.0
     t28 = y_qx * t27
-    t29 = 1.0 - (t18 + t28)
+    t29 = 1.0 - t18 - t28
     t30 = y_qy * t17
     t31 = y_qw * t27
     t32 = t30 + t31
     t33 = t23 + t24
     t34 = t30 - t31
-    t35 = 1.0 - (t16 + t28)
+    t35 = t16 - t28
     t36 = 1.0 / y_scale
     t37 = t25 * t36
     t38 = t22 * t36
@@ -161,13 +161,13 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     t43 = t35 * t36
     t44 = t34 * t36
     t45 = t33 * t36
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz
-    out[4] = x_x + x_scale * (t6 + y_z * (t7 + t8))
-    out[5] = x_y + x_scale * (t11 + y_z * (t12 - t13))
-    out[6] = x_z + x_scale * (t14 + y_z * (1.0 - (t1 + t10)))
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz))
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy)
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz
+    out[4] = x_x + x_scale * t8
+    out[5] = x_y + x_scale * (y_z * (t11 - t12) + t13)
+    out[6] = x_z + x_scale * t14
     out[7] = x_scale * y_scale
     out_D_x[0, 0] = t19
     out_D_x[0, 1] = t22
@@ -184,21 +184,21 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     out_D_x[3, 3] = t39
     out_D_x[3, 4] = t38
     out_D_x[3, 5] = t37
-    out_D_x[3, 6] = y_x * t39 + y_y * t38 + y_z * t37
+    out_D_x[3, 6] = y_z * t37 + (y_x * t39 + y_y * t38)
     out_D_x[4, 0] = y_y * t40 - y_z * t41
     out_D_x[4, 1] = y_z * t42 - y_x * t40
     out_D_x[4, 2] = y_x * t41 - y_y * t42
     out_D_x[4, 3] = t42
     out_D_x[4, 4] = t41
     out_D_x[4, 5] = t40
-    out_D_x[4, 6] = y_x * t42 + y_y * t41 + y_z * t40
+    out_D_x[4, 6] = y_z * t40 + (y_x * t42 + y_y * t41)
     out_D_x[5, 0] = y_y * t43 - y_z * t44
     out_D_x[5, 1] = y_z * t45 - y_x * t43
     out_D_x[5, 2] = y_x * t44 - y_y * t45
     out_D_x[5, 3] = t45
     out_D_x[5, 4] = t44
     out_D_x[5, 5] = t43
-    out_D_x[5, 6] = y_x * t45 + y_y * t44 + y_z * t43
+    out_D_x[5, 6] = y_z * t43 + (y_x * t45 + y_y * t44)
     out_D_x[6, 6] = 1.0
     out_D_y[0, 0] = 1.0
     out_D_y[1, 1] = 1.0

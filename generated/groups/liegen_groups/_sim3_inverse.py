@@ -17,7 +17,7 @@
 #   out: 8, Sim3 (qx, qy, qz, qw, x, y, z, scale)
 #   out_D_x: 7 x 7, derivative of out by the tangent of x
 #
-# Operations: 46 (outputs only), 82 (with Jacobians)
+# Operations: 45 (outputs only), 81 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 --group Sim2 --group Sim3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -77,63 +77,63 @@ def sim3_inverse_jacobians(x: npt.ArrayLike) -> Sim3InverseJacobians:
 
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_scale = x
-    t0 = x_qy * (-2.0)
-    t1 = x_qy * t0
-    t2 = x_qz * (-2.0)
-    t3 = x_qz * t2
-    t4 = x_qx * t0
-    t5 = x_qw * t2
-    t6 = x_x * (-1.0 - (t1 + t3)) + x_y * (t4 + t5)
-    t7 = x_qw * t0
-    t8 = x_qx * t2
+    t0 = x_qz * 2.0
+    t1 = x_qz * t0
+    t2 = x_qy * 2.0
+    t3 = 1.0 - x_qy * t2
+    t4 = x_qx * t2
+    t5 = x_qw * t0
+    t6 = x_qw * t2
+    t7 = x_qx * t0
+    t8 = x_z * (t6 - t7) + (x_x * (t1 - t3) - x_y * (t4 + t5))
     t9 = 1.0 / x_scale
-    t10 = x_qx * (-2.0)
+    t10 = x_qx * 2.0
     t11 = x_qx * t10
-    t12 = x_x * (t4 - t5) + x_y * (-1.0 - (t3 + t11))
-    t13 = x_qy * t2
+    t12 = x_x * (t5 - t4) + x_y * (t11 + (t1 - 1.0))
+    t13 = x_qy * t0
     t14 = x_qw * t10
-    t15 = x_y * (t13 - t14) + x_x * (t7 + t8)
+    t15 = x_z * (t11 - t3) + (x_y * (t14 - t13) - x_x * (t6 + t7))
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = (t6 + x_z * (t8 - t7)) * t9
-    out[5] = t9 * (t12 + x_z * (t13 + t14))
-    out[6] = t9 * (t15 + x_z * (-1.0 - (t1 + t11)))
+    out[4] = t8 * t9
+    out[5] = t9 * (t12 - x_z * (t13 + t14))
+    out[6] = t9 * t15
     out[7] = t9
 
 
 def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_scale = x
     t0 = x_qy * (-2.0)
-    t1 = x_qy * t0
+    t1 = -1.0 - x_qy * t0
     t2 = x_qz * (-2.0)
     t3 = x_qz * t2
-    t4 = -1.0 - (t1 + t3)
+    t4 = t1 - t3
     t5 = x_qx * t0
     t6 = x_qw * t2
     t7 = t5 + t6
-    t8 = x_qw * t0
-    t9 = x_qx * t2
-    t10 = t9 - t8
+    t8 = x_qx * t2
+    t9 = x_qw * t0
+    t10 = t8 - t9
     t11 = 1.0 / x_scale
     t12 = t5 - t6
-    t13 = x_qx * (-2.0)
+    t13 = x_qx * 2.0
     t14 = x_qx * t13
-    t15 = -1.0 - (t3 + t14)
+    t15 = t14 + (-1.0 - t3)
     t16 = x_qy * t2
     t17 = x_qw * t13
-    t18 = t16 + t17
-    t19 = t16 - t17
-    t20 = t8 + t9
-    t21 = -1.0 - (t1 + t14)
+    t18 = t16 - t17
+    t19 = t16 + t17
+    t20 = t9 + t8
+    t21 = t1 + t14
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = (x_x * t4 + x_y * t7 + x_z * t10) * t11
-    out[5] = t11 * (x_x * t12 + x_y * t15 + x_z * t18)
-    out[6] = t11 * (x_y * t19 + x_x * t20 + x_z * t21)
+    out[4] = (x_z * t10 + (x_x * t4 + x_y * t7)) * t11
+    out[5] = t11 * (x_z * t18 + (x_x * t12 + x_y * t15))
+    out[6] = t11 * (x_z * t21 + (x_y * t19 + x_x * t20))
     out[7] = t11
     out_D_x[0, 0] = t4
     out_D_x[0, 1] = t12
@@ -144,24 +144,24 @@ def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
     out_D_x[2, 0] = t10
     out_D_x[2, 1] = t18
     out_D_x[2, 2] = t21
-    out_D_x[3, 0] = x_y * t10 - x_z * t7
+    out_D_x[3, 0] = x_y * t10 - t7 * x_z
     out_D_x[3, 1] = x_y * t18 - x_z * t15
     out_D_x[3, 2] = x_y * t21 - x_z * t19
-    out_D_x[3, 3] = x_scale * t4
+    out_D_x[3, 3] = t4 * x_scale
     out_D_x[3, 4] = x_scale * t12
     out_D_x[3, 5] = x_scale * t20
     out_D_x[3, 6] = x_x
-    out_D_x[4, 0] = x_z * t4 - x_x * t10
+    out_D_x[4, 0] = t4 * x_z - x_x * t10
     out_D_x[4, 1] = x_z * t12 - x_x * t18
     out_D_x[4, 2] = x_z * t20 - x_x * t21
-    out_D_x[4, 3] = x_scale * t7
+    out_D_x[4, 3] = t7 * x_scale
     out_D_x[4, 4] = x_scale * t15
     out_D_x[4, 5] = x_scale * t19
     out_D_x[4, 6] = x_y
-    out_D_x[5, 0] = x_x * t7 - x_y * t4
+    out_D_x[5, 0] = x_x * t7 - t4 * x_y
     out_D_x[5, 1] = x_x * t15 - x_y * t12
     out_D_x[5, 2] = x_x * t19 - x_y * t20
-    out_D_x[5, 3] = x_scale * t10
+    out_D_x[5, 3] = t10 * x_scale
     out_D_x[5, 4] = x_scale * t18
     out_D_x[5, 5] = x_scale * t21
     out_D_x[5, 6] = x_z
