@@ -220,6 +220,9 @@ def test_command_exits_with_1_and_names_what_is_beyond():
 def test_wrong_use():
     assert "give both" in CliRunner().invoke(app, ["verify", "--peers"]).output
     assert "without a loss" in run("-f", "prior_so2", "--loss", "huber").output
+    unknown = run("-f", "prior_so2", "--chart", "sopus")
+    assert unknown.exit_code == 2
+    assert "unknown chart 'sopus'; one of gtsam, " in unknown.output
 
 
 def test_kinds():

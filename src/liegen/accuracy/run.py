@@ -8,6 +8,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 
 from liegen.charts import PRESETS
+from liegen.charts import preset as read_preset
 from liegen.errors import DefinitionError
 from liegen.verify.backends import workspace
 from liegen.verify.draws import AnyFunction
@@ -58,9 +59,11 @@ def accuracy(
     """Measure every function in every preset, or in one; ``samples`` for each angle.
 
     ``reload`` lets other processes load the functions again; without it one process does everything.
-    Raises DefinitionError for a factor with a loss, whose Jacobian is no derivative of its residual;
-    ToolError when a compiler is there but refuses the generated C.
+    Raises DefinitionError for an unknown preset, and for a factor with a loss, whose Jacobian is no
+    derivative of its residual; ToolError when a compiler is there but refuses the generated C.
     """
+    if preset:
+        read_preset(preset, "--chart")
     for f in functions:
         if f.weighting and f.weighting.loss:
             raise DefinitionError(f"{f.graph.site}: {f.name} has a loss: measure its accuracy without it")

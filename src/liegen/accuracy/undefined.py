@@ -109,6 +109,12 @@ def _moving_basis(graph: Graph) -> bool:
     return any(has_sphere(n.operands[0].manifold.form) and n.operands[0] not in fixed for n in _logs(graph))
 
 
+def _singular(graph: Graph) -> bool:
+    """Whether an inverse Jacobian is taken that is not constant."""
+    inverses = [n for n in graph.nodes() if n.operation.name in ("Jr_inv", "Jl_inv")]
+    return any(n.operands[0].manifold.form.dim > 1 for n in inverses)
+
+
 def _vector_part(graph: Graph) -> bool:
     return any(map(takes_vector_part, graph.nodes()))
 
@@ -202,7 +208,7 @@ _RULES: tuple[_Rule, ...] = (
     _Rule(
         "rotation by 2 pi n, n >= 1",
         "Jr and Jl are singular",
-        _named("Jr_inv", "Jl_inv"),
+        _singular,
         _whole_turn,
         "not finite, or as large as the rounding of 2 pi makes it",
     ),
