@@ -54,7 +54,6 @@ class Output:
         """Number of stored scalars."""
         return len(self.storage)
 
-
     @property
     def laid_out(self) -> bool:
         """Whether a matrix stands for an element of another manifold: its order is that of its layout."""
