@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from liegen.algebra.linear import plain
 from liegen.charts import Chart, FormChart, Preset, form_chart, preset
 from liegen.errors import UncertaintyError
 from liegen.manifolds import Manifold
@@ -46,4 +47,4 @@ def _chart(T: Manifold, chart: str | Chart | Preset) -> FormChart | None:
 
 def _matrix(chain: Any) -> Array:
     """The product of sparse factors, as an array (..., n, n)."""
-    return reduce(np.matmul, [as_array(factor) for factor in chain])
+    return reduce(np.matmul, [as_array(factor) for factor in plain(chain)])
