@@ -9,12 +9,14 @@ import casadi as ca
 import numpy as np
 import pytest
 import similarity_reference as ref
+import sympy as sp
 
 from liegen.coefficients import (
     similarity,
     similarity_derivatives,
     similarity_inverse,
     similarity_logarithm,
+    stumpff,
     tables,
 )
 
@@ -137,6 +139,16 @@ def test_closed_forms_are_the_integrals(digits):
 def computed_exactly(lam, s):
     values = (*similarity(lam, s), *similarity_inverse(lam, s), *similarity_derivatives(lam, s))
     return dict(zip(ref.NAMES, values, strict=True))
+
+
+def test_without_scale_they_are_the_stumpff_functions():
+    """Proved in SymPy: A = 1, B = c_2, C = c_3, and the values at 0."""
+    s, zero = sp.Symbol("x", positive=True), sp.Integer(0)
+    _, _, c2, c3 = stumpff(s, 3)
+    for mine, known in zip(similarity(zero, s), (1, c2, c3), strict=True):
+        assert sp.simplify(mine - known) == 0
+    assert similarity(zero, zero) == (1, sp.Rational(1, 2), sp.Rational(1, 6))
+    assert similarity_inverse(zero, zero) == (1, sp.Rational(1, 2), sp.Rational(1, 12))
 
 
 def test_a_wrong_coefficient_is_seen():

@@ -89,8 +89,17 @@ def _numbers(forms: Expressions, lam: Any, s: Any) -> Expressions:
     return tuple(+mp.re(value) for value in values)
 
 
+def _expression(form: Any, lam: Any, s: Any) -> Any:
+    """Of SymPy arguments; at 0 the limit."""
+    form = sp.limit(form, LAMBDA, 0) if lam == 0 else form.subs(LAMBDA, lam)
+    if s != 0:
+        return form.subs(S, s)
+    t = sp.Symbol("t", positive=True)
+    return sp.limit(sp.simplify(form.subs(S, t**2)), t, 0)
+
+
 def evaluate(forms: Expressions, lam: Any, s: Any) -> Expressions:
     """The forms: mpmath numbers right to the working precision, or SymPy expressions."""
     if isinstance(lam, sp.Basic) or isinstance(s, sp.Basic):
-        return tuple(f.subs({LAMBDA: lam, S: s}) for f in forms)
+        return tuple(_expression(f, lam, s) for f in forms)
     return _numbers(forms, lam, s)
