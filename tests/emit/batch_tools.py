@@ -26,7 +26,9 @@ BUILDS = {
     "4 lanes": ["-DLANES=4"],
     "8 lanes": ["-DLANES=8"],
     "streams": ["-DDEMO_STREAM_BYTES=0"],
+    "widest, streams": ["-march=native", "-ffp-contract=off", "-DDEMO_STREAM_BYTES=0"],
     "threads": ["-fopenmp", "-DDEMO_OPENMP"],
+    "threads, streams": ["-fopenmp", "-DDEMO_OPENMP", "-DDEMO_STREAM_BYTES=0"],
 }
 CANARY = 777.0
 

@@ -40,7 +40,8 @@ SYNTAX = Syntax(
 #: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
 BATCH_NAMES = words("""
     LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
-    lanes_finish block_value block_jacobians ptrdiff_t uint8_t
+    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL block_value block_jacobians
+    ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
 _FORMATS = {
     "scalar": "const lanes {0} = {1};",
@@ -71,6 +72,7 @@ class Batch:
     locals: tuple[str, ...]
     loop: str
     body: tuple[str, ...]
+    pens: tuple[str, ...]
     stream: str
     violated: str
 
@@ -152,6 +154,7 @@ class _Names:
     stream: str
     room: str
     arrays: Mapping[str, str]
+    pens: Mapping[str, str]
 
 
 def _names(kernel: Kernel) -> _Names:
@@ -165,7 +168,7 @@ def _names(kernel: Kernel) -> _Names:
     return _Names(
         n=own("n"), k=own("k"), count=own("count"), held=own("held"), broken=own("broken"),
         violated=own("violated"), jacobians=own("jacobians"), stream=own("stream"), room=own("room"),
-        arrays=arrays,
+        arrays=arrays, pens={p.name: own(f"{p.name}_pen") for p in kernel.jacobians.outputs},
     )  # fmt: skip
 
 
@@ -189,7 +192,8 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
         return f"lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
 
     def store(name: str) -> str:
-        passed = f"{names.arrays[name]}, {names.room}, {names.stream}"
+        pen = f"{names.stream} ? &{names.pens[name]} : NULL"
+        passed = f"{names.arrays[name]}, {names.room}, {pen}"
         return f"{package}_store({name}, {sizes[name]}, {place}, {passed});"
 
     lines = [
@@ -197,7 +201,7 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     ]
     lines += [f"lanes {names.arrays[a.name]}[{a.size}];" for a in kernel.arguments]
     lines += [f"lanes {names.arrays[name]}[{size}];" for name, size in sizes.items()]
-    lines += [f"lanes {names.room}[{max(sizes.values())}];"]
+    lines += [f"lanes {names.room}[LANES_ROOM({max(sizes.values())})];"]
     lines += [f"lanes_mask {names.held}[{bits}];"] if bits else []
     lines += [
         f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments
@@ -241,6 +245,7 @@ def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
         ),
         loop=f"ptrdiff_t {names.k} = 0; {names.k} < {names.n}; {names.k} += LANES",
         body=tuple(_body(kernel, options.package, names, blocks)),
+        pens=tuple(names.pens.values()),
         stream=names.stream,
         violated=names.violated,
     )
