@@ -104,6 +104,7 @@ FORMULAS: Mapping[str, Callable[..., Sequence[E]]] = {
     f.__name__: f
     for f in (
         between_se3, between_se3_whitened, between_so3, between_se2, between_so3xr3, prior_se3,
-        reprojection_bal, bearing_range_se2_r2, quaternion_local, quaternion_interpolation, imu_step, rolling_shutter,
+        reprojection_bal, bearing_range_se2_r2, quaternion_local, quaternion_interpolation,
+        imu_step, rolling_shutter,
     )
 }  # fmt: skip
