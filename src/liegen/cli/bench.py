@@ -140,7 +140,7 @@ def _peers(
         flags = "; ".join(f"{name}: {' '.join(FLAGS[name])}" for name in plan.flags)
         click.echo(
             f"\n{compiler_version()}; {flags}\n{calls} distinct inputs, {rounds} rounds in turn; "
-            "processor time; ratio: median over rounds of the time over liegen's with plain flags; small: near a solution"
+            "processor time; ratio: median of the time over liegen's with plain flags; small: near a solution"
         )
     content = report.as_json(results, plan, compiler_version())
     named = {"batches": [asdict(b) for b in batches], "missing": [asdict(m) for m in missing]}
