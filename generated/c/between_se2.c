@@ -22,7 +22,7 @@
  *   res_D_x: 3 x 3, derivative of res by the tangent of x
  *   res_D_y: 3 x 3, derivative of res by the tangent of y
  *
- * Operations: 53 (residual only), 76 (with Jacobians)
+ * Operations: 53 (residual only), 70 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -52,23 +52,23 @@ int liegen_factors_between_se2_res(
     const double z_x = z[2];
     const double z_y = z[3];
     const double t0 = x_c * y_s - x_s * y_c;
-    const double t1 = x_c * y_c + x_s * y_s;
-    const double t2 = atan2(z_c * t0 - z_s * t1, z_c * t1 + z_s * t0);
+    const double t1 = x_c * y_c + y_s * x_s;
+    const double t2 = atan2(z_c * t0 - z_s * t1, z_c * t1 + t0 * z_s);
     const double t3 = t2 * t2;
     const double t4 = t3 * (t3 * (-2.25732705039638e-06) + 0.07465244042649771);
     const double t5 = t3 * (t4 - 38.45987747204322) + 3799.5172048139725;
     const double t6 = t3 * (t3 * (t3 - 635.5207748643182) + 92825.69243378133);
     const double t7 = t5 * (t3 / (t6 - 2735652.38746603)) - 0.08333333333333333;
     const double t8 = 1.0 + t3 * t7;
-    const double t9 = y_x - x_x;
-    const double t10 = y_y - x_y;
-    const double t11 = x_c * t9 + x_s * t10 - z_x;
-    const double t12 = x_c * t10 - x_s * t9 - z_y;
+    const double t9 = x_x - y_x;
+    const double t10 = x_y - y_y;
+    const double t11 = x_s * t10 + (z_x + x_c * t9);
+    const double t12 = z_y + x_c * t10 - x_s * t9;
     const double t13 = z_c * t11 + z_s * t12;
     const double t14 = t2 * 0.5;
-    const double t15 = z_c * t12 - z_s * t11;
-    res[0] = t8 * t13 + t14 * t15;
-    res[1] = t8 * t15 - t13 * t14;
+    const double t15 = z_s * t11 - z_c * t12;
+    res[0] = t14 * t15 - t8 * t13;
+    res[1] = t8 * t15 + t13 * t14;
     res[2] = t2;
     return 0;
 }
@@ -95,53 +95,50 @@ int liegen_factors_between_se2(
     const double z_s = z[1];
     const double z_x = z[2];
     const double z_y = z[3];
-    const double t0 = x_c * y_s - x_s * y_c;
+    const double t0 = x_c * y_s - y_c * x_s;
     const double t1 = x_c * y_c + x_s * y_s;
-    const double t2 = atan2(z_c * t0 - z_s * t1, z_c * t1 + z_s * t0);
+    const double t2 = atan2(z_c * t0 - t1 * z_s, t1 * z_c + t0 * z_s);
     const double t3 = t2 * t2;
     const double t4 = t3 * (t3 * 2.25732705039638e-06 - 0.07465244042649771);
-    const double t5 = t3 * (t4 + 38.45987747204322) - 3799.5172048139725;
-    const double t6 = t3 * (t3 * (t3 - 635.5207748643182) + 92825.69243378133);
-    const double t7 = 0.08333333333333333 + t5 * (t3 / (t6 - 2735652.38746603));
-    const double t8 = 1.0 - t3 * t7;
-    const double t9 = y_x - x_x;
-    const double t10 = y_y - x_y;
-    const double t11 = x_c * t9 + x_s * t10;
-    const double t12 = t11 - z_x;
-    const double t13 = x_c * t10 - x_s * t9;
-    const double t14 = t13 - z_y;
-    const double t15 = z_c * t12 + z_s * t14;
-    const double t16 = t2 * 0.5;
-    const double t17 = z_c * t14 - z_s * t12;
-    const double t18 = t8 * t15 + t16 * t17;
-    const double t19 = -t16;
-    const double t20 = t8 * t17 + t15 * t19;
-    const double t21 = t0 * t19 - t1 * t8;
-    const double t22 = t1 * t16 - t0 * t8;
-    const double t23 = t2 * t7;
-    const double t24 = t18 * t23 + 0.5 * t20;
-    const double t25 = t20 * t23 + t18 * (-0.5);
+    const double t5 = t3 * (t3 * (t3 - 635.5207748643182) + 92825.69243378133);
+    const double t6 = t3 * (t4 + 38.45987747204322) - 3799.5172048139725;
+    const double t7 = x_x - y_x;
+    const double t8 = x_y - y_y;
+    const double t9 = x_c * t8 - x_s * t7;
+    const double t10 = x_c * t7 + x_s * t8;
+    const double t11 = 0.08333333333333333 + t6 * (t3 / (t5 - 2735652.38746603));
+    const double t12 = 1.0 - t3 * t11;
+    const double t13 = t2 * (-0.5);
+    const double t14 = t0 * t12 + t1 * t13;
+    const double t15 = t0 * t13 - t1 * t12;
+    const double t16 = z_y + t9;
+    const double t17 = z_x + t10;
+    const double t18 = t15 * t17 - t14 * t16;
+    const double t19 = t2 * t11;
+    const double t20 = t17 * t14 + t15 * t16;
+    const double t21 = t20 * t19 + (-0.5 * t18);
+    const double t22 = t18 * t19 + 0.5 * t20;
     res[0] = t18;
     res[1] = t20;
     res[2] = t2;
     if (res_D_x != NULL) {
-        res_D_x[0] = t21;
-        res_D_x[1] = t22;
-        res_D_x[2] = t11 * t22 - t13 * t21 - t24;
-        res_D_x[3] = -t22;
-        res_D_x[4] = t21;
-        res_D_x[5] = t13 * t22 + t11 * t21 - t25;
+        res_D_x[0] = t15;
+        res_D_x[1] = -t14;
+        res_D_x[2] = t10 * t14 + (t15 * t9 - t22);
+        res_D_x[3] = t14;
+        res_D_x[4] = t15;
+        res_D_x[5] = t14 * t9 - t21 - t15 * t10;
         res_D_x[6] = 0.0;
         res_D_x[7] = 0.0;
         res_D_x[8] = -1.0;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = t8;
-        res_D_y[1] = t19;
-        res_D_y[2] = t24;
-        res_D_y[3] = t16;
-        res_D_y[4] = t8;
-        res_D_y[5] = t25;
+        res_D_y[0] = t12;
+        res_D_y[1] = t13;
+        res_D_y[2] = t22;
+        res_D_y[3] = -t13;
+        res_D_y[4] = t12;
+        res_D_y[5] = t21;
         res_D_y[6] = 0.0;
         res_D_y[7] = 0.0;
         res_D_y[8] = 1.0;

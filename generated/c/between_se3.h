@@ -23,7 +23,7 @@
  *   res_D_x: 6 x 6, derivative of res by the tangent of x
  *   res_D_y: 6 x 6, derivative of res by the tangent of y
  *
- * Operations: 212 (residual only), 429 (with Jacobians)
+ * Operations: 211 (residual only), 412 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -22,7 +22,7 @@
  *   res_D_x: 3 x 3, derivative of res by the tangent of x
  *   res_D_y: 3 x 3, derivative of res by the tangent of y
  *
- * Operations: 89 (residual only), 200 (with Jacobians)
+ * Operations: 89 (residual only), 184 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -58,35 +58,35 @@
  * Operations:
  *   bearing_se2: 30, with Jacobians 49
  *   bearing_se2_r2: 30, with Jacobians 44
- *   bearing_se3: 139, with Jacobians 380
- *   bearing_se3_gtsam: 139, with Jacobians 317
- *   bearing_se3_r3: 139, with Jacobians 326
- *   bearing_se3_r3_gtsam: 139, with Jacobians 263
+ *   bearing_se3: 138, with Jacobians 377
+ *   bearing_se3_gtsam: 137, with Jacobians 316
+ *   bearing_se3_r3: 138, with Jacobians 324
+ *   bearing_se3_r3_gtsam: 137, with Jacobians 265
  *   between_r2: 4, with Jacobians 4
  *   between_r3: 6, with Jacobians 6
- *   between_se2: 53, with Jacobians 76
- *   between_se3: 212, with Jacobians 429
+ *   between_se2: 53, with Jacobians 70
+ *   between_se3: 211, with Jacobians 412
  *   between_so2: 13, with Jacobians 13
- *   between_so3: 89, with Jacobians 200
- *   projection_cal3_bundler: 60, with Jacobians 140
- *   projection_cal3_ds2: 77, with Jacobians 179
- *   projection_cal3_s2: 53, with Jacobians 102
- *   sfm_cal3_bundler: 60, with Jacobians 149
- *   sfm_cal3_s2: 53, with Jacobians 102
+ *   between_so3: 89, with Jacobians 184
+ *   projection_cal3_bundler: 58, with Jacobians 131
+ *   projection_cal3_ds2: 75, with Jacobians 173
+ *   projection_cal3_s2: 52, with Jacobians 97
+ *   sfm_cal3_bundler: 58, with Jacobians 138
+ *   sfm_cal3_s2: 52, with Jacobians 98
  *   prior_r2: 2, with Jacobians 2
  *   prior_r3: 3, with Jacobians 3
  *   prior_s2: 75, with Jacobians 183
  *   prior_s2_gtsam: 76, with Jacobians 123
  *   prior_se2: 39, with Jacobians 47
- *   prior_se3: 151, with Jacobians 218
+ *   prior_se3: 150, with Jacobians 217
  *   prior_so2: 7, with Jacobians 7
  *   prior_so3: 61, with Jacobians 103
  *   range_r2: 17, with Jacobians 23
  *   range_r3: 23, with Jacobians 32
  *   range_se2: 17, with Jacobians 34
  *   range_se2_r2: 17, with Jacobians 28
- *   range_se3: 23, with Jacobians 107
- *   range_se3_r3: 23, with Jacobians 68
+ *   range_se3: 23, with Jacobians 105
+ *   range_se3_r3: 23, with Jacobians 67
  *
  * Regenerate: liegen generate -o DIR
  *

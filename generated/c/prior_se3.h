@@ -19,7 +19,7 @@
  *   res: 6, R6 (v0, v1, v2, v3, v4, v5)
  *   res_D_x: 6 x 6, derivative of res by the tangent of x
  *
- * Operations: 151 (residual only), 218 (with Jacobians)
+ * Operations: 150 (residual only), 217 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -37,7 +37,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 60 (residual only), 140 (with Jacobians)
+ * Operations: 58 (residual only), 131 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -37,7 +37,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 77 (residual only), 179 (with Jacobians)
+ * Operations: 75 (residual only), 173 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -24,7 +24,7 @@
  *   res_D_x: 1 x 6, derivative of res by the tangent of x
  *   res_D_y: 1 x 6, derivative of res by the tangent of y
  *
- * Operations: 23 (residual only), 107 (with Jacobians)
+ * Operations: 23 (residual only), 105 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -86,66 +86,62 @@ int liegen_factors_range_se3(
     const double y_y = y[5];
     const double y_z = y[6];
     const double z_0 = z[0];
-    const double t0 = y_x - x_x;
-    const double t1 = y_y - x_y;
-    const double t2 = y_z - x_z;
-    const double t3 = t0 * t0 + t1 * t1 + t2 * t2;
+    const double t0 = x_x - y_x;
+    const double t1 = x_y - y_y;
+    const double t2 = x_z - y_z;
+    const double t3 = t2 * t2 + (t0 * t0 + t1 * t1);
     const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
     const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
     const double t6 = t0 * t5;
     const double t7 = t1 * t5;
     const double t8 = t2 * t5;
-    const double t9 = sqrt(t6 * t6 + t7 * t7 + t8 * t8);
+    const double t9 = sqrt(t8 * t8 + (t6 * t6 + t7 * t7));
     const double t10 = 1.0 / (0.0 < t9 ? t9 : 1.0);
     const double t11 = t6 * t10;
     const double t12 = x_qy * 2.0;
-    const double t13 = x_qy * t12;
-    const double t14 = x_qz * 2.0;
+    const double t13 = 1.0 - x_qy * t12;
+    const double t14 = 2.0 * x_qz;
     const double t15 = x_qz * t14;
     const double t16 = t7 * t10;
-    const double t17 = x_qx * t12;
-    const double t18 = x_qw * t14;
-    const double t19 = t11 * (t13 + t15 - 1.0) - t16 * (t17 + t18);
-    const double t20 = t8 * t10;
-    const double t21 = x_qx * t14;
-    const double t22 = x_qw * t12;
-    const double t23 = x_qx * 2.0;
-    const double t24 = x_qx * t23;
-    const double t25 = t11 * (t18 - t17) + t16 * (t15 + t24 - 1.0);
-    const double t26 = x_qy * t14;
-    const double t27 = x_qw * t23;
-    const double t28 = t16 * (t27 - t26) - t11 * (t21 + t22);
-    const double t29 = y_qy * 2.0;
-    const double t30 = y_qy * t29;
-    const double t31 = y_qz * 2.0;
-    const double t32 = y_qz * t31;
-    const double t33 = y_qx * t29;
-    const double t34 = y_qw * t31;
-    const double t35 = t11 * (1.0 - (t30 + t32)) + t16 * (t33 + t34);
-    const double t36 = y_qx * t31;
-    const double t37 = y_qw * t29;
-    const double t38 = y_qx * 2.0;
-    const double t39 = y_qx * t38;
-    const double t40 = t11 * (t33 - t34) + t16 * (1.0 - (t32 + t39));
-    const double t41 = y_qy * t31;
-    const double t42 = y_qw * t38;
-    const double t43 = t11 * (t36 + t37) + t16 * (t41 - t42);
+    const double t17 = t12 * x_qx;
+    const double t18 = t14 * x_qw;
+    const double t19 = t8 * t10;
+    const double t20 = t14 * x_qx;
+    const double t21 = t12 * x_qw;
+    const double t22 = 2.0 * x_qx;
+    const double t23 = x_qx * t22;
+    const double t24 = t11 * (t17 - t18) + t16 * (1.0 - t15 - t23);
+    const double t25 = x_qy * t14;
+    const double t26 = x_qw * t22;
+    const double t27 = 2.0 * y_qz;
+    const double t28 = y_qz * t27;
+    const double t29 = 2.0 * y_qy;
+    const double t30 = 1.0 - y_qy * t29;
+    const double t31 = t29 * y_qx;
+    const double t32 = t27 * y_qw;
+    const double t33 = t29 * y_qw;
+    const double t34 = t27 * y_qx;
+    const double t35 = 2.0 * y_qx;
+    const double t36 = y_qx * t35;
+    const double t37 = t11 * (t32 - t31) + t16 * (t36 + (t28 - 1.0));
+    const double t38 = y_qy * t27;
+    const double t39 = y_qw * t35;
     res[0] = t9 / t5 - z_0;
     if (res_D_x != NULL) {
         res_D_x[0] = 0.0;
         res_D_x[1] = 0.0;
         res_D_x[2] = 0.0;
-        res_D_x[3] = t19 + t20 * (t22 - t21);
-        res_D_x[4] = t25 - t20 * (t26 + t27);
-        res_D_x[5] = t28 + t20 * (t13 + t24 - 1.0);
+        res_D_x[3] = t19 * (t20 - t21) + (t11 * (t13 - t15) + t16 * (t17 + t18));
+        res_D_x[4] = t19 * (t25 + t26) + t24;
+        res_D_x[5] = t19 * (t13 - t23) + (t11 * (t20 + t21) + t16 * (t25 - t26));
     }
     if (res_D_y != NULL) {
         res_D_y[0] = 0.0;
         res_D_y[1] = 0.0;
         res_D_y[2] = 0.0;
-        res_D_y[3] = t35 + t20 * (t36 - t37);
-        res_D_y[4] = t40 + t20 * (t41 + t42);
-        res_D_y[5] = t43 + t20 * (1.0 - (t30 + t39));
+        res_D_y[3] = t19 * (t33 - t34) + (t11 * (t28 - t30) - t16 * (t31 + t32));
+        res_D_y[4] = t37 - t19 * (t38 + t39);
+        res_D_y[5] = t19 * (t36 - t30) + (t16 * (t39 - t38) - t11 * (t34 + t33));
     }
     return 0;
 }

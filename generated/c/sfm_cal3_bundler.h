@@ -39,7 +39,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 60 (residual only), 149 (with Jacobians)
+ * Operations: 58 (residual only), 138 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -21,7 +21,7 @@
 #   res_D_x: 3 x 3, derivative of res by the tangent of x
 #   res_D_y: 3 x 3, derivative of res by the tangent of y
 #
-# Operations: 53 (residual only), 76 (with Jacobians)
+# Operations: 53 (residual only), 70 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -100,23 +100,23 @@ def _value(x: Array, y: Array, z: Array, res: Array) -> None:
     y_c, y_s, y_x, y_y = y
     z_c, z_s, z_x, z_y = z
     t0 = x_c * y_s - x_s * y_c
-    t1 = x_c * y_c + x_s * y_s
-    t2 = np.arctan2(z_c * t0 - z_s * t1, z_c * t1 + z_s * t0)
+    t1 = x_c * y_c + y_s * x_s
+    t2 = np.arctan2(z_c * t0 - z_s * t1, z_c * t1 + t0 * z_s)
     t3 = t2 * t2
     t4 = t3 * (t3 * (-2.25732705039638e-06) + 0.07465244042649771)
     t5 = t3 * (t4 - 38.45987747204322) + 3799.5172048139725
     t6 = t3 * (t3 * (t3 - 635.5207748643182) + 92825.69243378133)
     t7 = t5 * (t3 / (t6 - 2735652.38746603)) - 0.08333333333333333
     t8 = 1.0 + t3 * t7
-    t9 = y_x - x_x
-    t10 = y_y - x_y
-    t11 = x_c * t9 + x_s * t10 - z_x
-    t12 = x_c * t10 - x_s * t9 - z_y
+    t9 = x_x - y_x
+    t10 = x_y - y_y
+    t11 = x_s * t10 + (z_x + x_c * t9)
+    t12 = z_y + x_c * t10 - x_s * t9
     t13 = z_c * t11 + z_s * t12
     t14 = t2 * 0.5
-    t15 = z_c * t12 - z_s * t11
-    res[0] = t8 * t13 + t14 * t15
-    res[1] = t8 * t15 - t13 * t14
+    t15 = z_s * t11 - z_c * t12
+    res[0] = t14 * t15 - t8 * t13
+    res[1] = t8 * t15 + t13 * t14
     res[2] = t2
 
 
@@ -124,46 +124,43 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     x_c, x_s, x_x, x_y = x
     y_c, y_s, y_x, y_y = y
     z_c, z_s, z_x, z_y = z
-    t0 = x_c * y_s - x_s * y_c
+    t0 = x_c * y_s - y_c * x_s
     t1 = x_c * y_c + x_s * y_s
-    t2 = np.arctan2(z_c * t0 - z_s * t1, z_c * t1 + z_s * t0)
+    t2 = np.arctan2(z_c * t0 - t1 * z_s, t1 * z_c + t0 * z_s)
     t3 = t2 * t2
     t4 = t3 * (t3 * 2.25732705039638e-06 - 0.07465244042649771)
-    t5 = t3 * (t4 + 38.45987747204322) - 3799.5172048139725
-    t6 = t3 * (t3 * (t3 - 635.5207748643182) + 92825.69243378133)
-    t7 = 0.08333333333333333 + t5 * (t3 / (t6 - 2735652.38746603))
-    t8 = 1.0 - t3 * t7
-    t9 = y_x - x_x
-    t10 = y_y - x_y
-    t11 = x_c * t9 + x_s * t10
-    t12 = t11 - z_x
-    t13 = x_c * t10 - x_s * t9
-    t14 = t13 - z_y
-    t15 = z_c * t12 + z_s * t14
-    t16 = t2 * 0.5
-    t17 = z_c * t14 - z_s * t12
-    t18 = t8 * t15 + t16 * t17
-    t19 = -t16
-    t20 = t8 * t17 + t15 * t19
-    t21 = t0 * t19 - t1 * t8
-    t22 = t1 * t16 - t0 * t8
-    t23 = t2 * t7
-    t24 = t18 * t23 + 0.5 * t20
-    t25 = t20 * t23 + t18 * (-0.5)
+    t5 = t3 * (t3 * (t3 - 635.5207748643182) + 92825.69243378133)
+    t6 = t3 * (t4 + 38.45987747204322) - 3799.5172048139725
+    t7 = x_x - y_x
+    t8 = x_y - y_y
+    t9 = x_c * t8 - x_s * t7
+    t10 = x_c * t7 + x_s * t8
+    t11 = 0.08333333333333333 + t6 * (t3 / (t5 - 2735652.38746603))
+    t12 = 1.0 - t3 * t11
+    t13 = t2 * (-0.5)
+    t14 = t0 * t12 + t1 * t13
+    t15 = t0 * t13 - t1 * t12
+    t16 = z_y + t9
+    t17 = z_x + t10
+    t18 = t15 * t17 - t14 * t16
+    t19 = t2 * t11
+    t20 = t17 * t14 + t15 * t16
+    t21 = t20 * t19 + (-0.5 * t18)
+    t22 = t18 * t19 + 0.5 * t20
     res[0] = t18
     res[1] = t20
     res[2] = t2
-    res_D_x[0, 0] = t21
-    res_D_x[0, 1] = t22
-    res_D_x[0, 2] = t11 * t22 - t13 * t21 - t24
-    res_D_x[1, 0] = -t22
-    res_D_x[1, 1] = t21
-    res_D_x[1, 2] = t13 * t22 + t11 * t21 - t25
+    res_D_x[0, 0] = t15
+    res_D_x[0, 1] = -t14
+    res_D_x[0, 2] = t10 * t14 + (t15 * t9 - t22)
+    res_D_x[1, 0] = t14
+    res_D_x[1, 1] = t15
+    res_D_x[1, 2] = t14 * t9 - t21 - t15 * t10
     res_D_x[2, 2] = -1.0
-    res_D_y[0, 0] = t8
-    res_D_y[0, 1] = t19
-    res_D_y[0, 2] = t24
-    res_D_y[1, 0] = t16
-    res_D_y[1, 1] = t8
-    res_D_y[1, 2] = t25
+    res_D_y[0, 0] = t12
+    res_D_y[0, 1] = t13
+    res_D_y[0, 2] = t22
+    res_D_y[1, 0] = -t13
+    res_D_y[1, 1] = t12
+    res_D_y[1, 2] = t21
     res_D_y[2, 2] = 1.0

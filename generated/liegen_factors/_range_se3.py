@@ -23,7 +23,7 @@
 #   res_D_x: 1 x 6, derivative of res by the tangent of x
 #   res_D_y: 1 x 6, derivative of res by the tangent of y
 #
-# Operations: 23 (residual only), 107 (with Jacobians)
+# Operations: 23 (residual only), 105 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -117,54 +117,50 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z = x
     y_qx, y_qy, y_qz, y_qw, y_x, y_y, y_z = y
     z_0 = z[0]
-    t0 = y_x - x_x
-    t1 = y_y - x_y
-    t2 = y_z - x_z
-    t3 = t0 * t0 + t1 * t1 + t2 * t2
+    t0 = x_x - y_x
+    t1 = x_y - y_y
+    t2 = x_z - y_z
+    t3 = t2 * t2 + (t0 * t0 + t1 * t1)
     t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
     t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
     t6 = t0 * t5
     t7 = t1 * t5
     t8 = t2 * t5
-    t9 = np.sqrt(t6 * t6 + t7 * t7 + t8 * t8)
+    t9 = np.sqrt(t8 * t8 + (t6 * t6 + t7 * t7))
     t10 = 1.0 / np.where(0.0 < t9, t9, 1.0)
     t11 = t6 * t10
     t12 = x_qy * 2.0
-    t13 = x_qy * t12
-    t14 = x_qz * 2.0
+    t13 = 1.0 - x_qy * t12
+    t14 = 2.0 * x_qz
     t15 = x_qz * t14
     t16 = t7 * t10
-    t17 = x_qx * t12
-    t18 = x_qw * t14
-    t19 = t11 * (t13 + t15 - 1.0) - t16 * (t17 + t18)
-    t20 = t8 * t10
-    t21 = x_qx * t14
-    t22 = x_qw * t12
-    t23 = x_qx * 2.0
-    t24 = x_qx * t23
-    t25 = t11 * (t18 - t17) + t16 * (t15 + t24 - 1.0)
-    t26 = x_qy * t14
-    t27 = x_qw * t23
-    t28 = t16 * (t27 - t26) - t11 * (t21 + t22)
-    t29 = y_qy * 2.0
-    t30 = y_qy * t29
-    t31 = y_qz * 2.0
-    t32 = y_qz * t31
-    t33 = y_qx * t29
-    t34 = y_qw * t31
-    t35 = t11 * (1.0 - (t30 + t32)) + t16 * (t33 + t34)
-    t36 = y_qx * t31
-    t37 = y_qw * t29
-    t38 = y_qx * 2.0
-    t39 = y_qx * t38
-    t40 = t11 * (t33 - t34) + t16 * (1.0 - (t32 + t39))
-    t41 = y_qy * t31
-    t42 = y_qw * t38
-    t43 = t11 * (t36 + t37) + t16 * (t41 - t42)
+    t17 = t12 * x_qx
+    t18 = t14 * x_qw
+    t19 = t8 * t10
+    t20 = t14 * x_qx
+    t21 = t12 * x_qw
+    t22 = 2.0 * x_qx
+    t23 = x_qx * t22
+    t24 = t11 * (t17 - t18) + t16 * (1.0 - t15 - t23)
+    t25 = x_qy * t14
+    t26 = x_qw * t22
+    t27 = 2.0 * y_qz
+    t28 = y_qz * t27
+    t29 = 2.0 * y_qy
+    t30 = 1.0 - y_qy * t29
+    t31 = t29 * y_qx
+    t32 = t27 * y_qw
+    t33 = t29 * y_qw
+    t34 = t27 * y_qx
+    t35 = 2.0 * y_qx
+    t36 = y_qx * t35
+    t37 = t11 * (t32 - t31) + t16 * (t36 + (t28 - 1.0))
+    t38 = y_qy * t27
+    t39 = y_qw * t35
     res[0] = t9 / t5 - z_0
-    res_D_x[0, 3] = t19 + t20 * (t22 - t21)
-    res_D_x[0, 4] = t25 - t20 * (t26 + t27)
-    res_D_x[0, 5] = t28 + t20 * (t13 + t24 - 1.0)
-    res_D_y[0, 3] = t35 + t20 * (t36 - t37)
-    res_D_y[0, 4] = t40 + t20 * (t41 + t42)
-    res_D_y[0, 5] = t43 + t20 * (1.0 - (t30 + t39))
+    res_D_x[0, 3] = t19 * (t20 - t21) + (t11 * (t13 - t15) + t16 * (t17 + t18))
+    res_D_x[0, 4] = t19 * (t25 + t26) + t24
+    res_D_x[0, 5] = t19 * (t13 - t23) + (t11 * (t20 + t21) + t16 * (t25 - t26))
+    res_D_y[0, 3] = t19 * (t33 - t34) + (t11 * (t28 - t30) - t16 * (t31 + t32))
+    res_D_y[0, 4] = t37 - t19 * (t38 + t39)
+    res_D_y[0, 5] = t19 * (t36 - t30) + (t16 * (t39 - t38) - t11 * (t34 + t33))

@@ -24,7 +24,7 @@
 #   res_D_x: 1 x 6, derivative of res by the tangent of x
 #   res_D_y: 1 x 3, derivative of res by the tangent of y
 #
-# Operations: 23 (residual only), 68 (with Jacobians)
+# Operations: 23 (residual only), 67 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -118,39 +118,37 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z = x
     y_x, y_y, y_z = y
     z_0 = z[0]
-    t0 = y_x - x_x
-    t1 = y_y - x_y
-    t2 = y_z - x_z
-    t3 = t0 * t0 + t1 * t1 + t2 * t2
+    t0 = x_x - y_x
+    t1 = x_y - y_y
+    t2 = x_z - y_z
+    t3 = t2 * t2 + (t0 * t0 + t1 * t1)
     t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
     t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
     t6 = t0 * t5
     t7 = t1 * t5
     t8 = t2 * t5
-    t9 = np.sqrt(t6 * t6 + t7 * t7 + t8 * t8)
-    t10 = 1.0 / np.where(0.0 < t9, t9, 1.0)
+    t9 = np.sqrt(t8 * t8 + (t6 * t6 + t7 * t7))
+    t10 = -1.0 / np.where(0.0 < t9, t9, 1.0)
     t11 = t6 * t10
-    t12 = x_qy * 2.0
-    t13 = x_qy * t12
-    t14 = x_qz * 2.0
-    t15 = x_qz * t14
+    t12 = 2.0 * x_qz
+    t13 = x_qz * t12
+    t14 = x_qy * 2.0
+    t15 = 1.0 - x_qy * t14
     t16 = t7 * t10
-    t17 = x_qx * t12
-    t18 = x_qw * t14
-    t19 = t11 * (t13 + t15 - 1.0) - t16 * (t17 + t18)
-    t20 = t8 * t10
-    t21 = x_qx * t14
-    t22 = x_qw * t12
-    t23 = x_qx * 2.0
-    t24 = x_qx * t23
-    t25 = t11 * (t18 - t17) + t16 * (t15 + t24 - 1.0)
-    t26 = x_qy * t14
-    t27 = x_qw * t23
-    t28 = t16 * (t27 - t26) - t11 * (t21 + t22)
+    t17 = t14 * x_qx
+    t18 = t12 * x_qw
+    t19 = t8 * t10
+    t20 = t14 * x_qw
+    t21 = t12 * x_qx
+    t22 = 2.0 * x_qx
+    t23 = x_qx * t22
+    t24 = t11 * (t18 - t17) + t16 * (t23 + (t13 - 1.0))
+    t25 = x_qy * t12
+    t26 = x_qw * t22
     res[0] = t9 / t5 - z_0
-    res_D_x[0, 3] = t19 + t20 * (t22 - t21)
-    res_D_x[0, 4] = t25 - t20 * (t26 + t27)
-    res_D_x[0, 5] = t28 + t20 * (t13 + t24 - 1.0)
+    res_D_x[0, 3] = t19 * (t20 - t21) + (t11 * (t13 - t15) - t16 * (t17 + t18))
+    res_D_x[0, 4] = t24 - t19 * (t25 + t26)
+    res_D_x[0, 5] = t19 * (t23 - t15) + (t16 * (t26 - t25) - t11 * (t21 + t20))
     res_D_y[0, 0] = t11
     res_D_y[0, 1] = t16
-    res_D_y[0, 2] = t20
+    res_D_y[0, 2] = t19

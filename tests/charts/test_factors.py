@@ -98,7 +98,8 @@ def test_exp_and_log_do_not_follow_the_chart():
     values = drawn(by_log)
     plain = numbers(by_log, values)["res"]
     for name in ("ceres", "g2o"):
-        np.testing.assert_array_equal(numbers(by_log.in_chart(name), values)["res"], plain)
+        # to rounding: sums are put in the order in which the Jacobian can share them
+        np.testing.assert_allclose(numbers(by_log.in_chart(name), values)["res"], plain, rtol=1e-14)
         assert np.abs(numbers(prior_se3.in_chart(name), values)["res"] - plain).max() > 1e-2
 
 

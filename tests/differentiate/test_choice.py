@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from liegen import R1, R3, SE3, SO3, factor, sin, stack
+from liegen import R1, R3, SE3, SO3, factor, function, sin, stack
 from liegen.bench import formulas
 from liegen.choice import ranked
 from liegen.derive import derive, lowered
@@ -82,7 +82,39 @@ def relative_of_moved(x: SO3, y: SO3, v: R3, *, z: SO3):
     return (z @ SO3.exp(v)).local(x.between(y @ SO3.exp(2 * v)))
 
 
-@pytest.mark.parametrize("function", [between_so3, between_se3, relative_of_moved], ids=lambda f: f.name)
+@function
+def way_so3(x: SO3, y: SO3, a: R1):
+    return x @ SO3.exp(a * x.local(y))
+
+
+@function
+def way_se3(x: SE3, y: SE3, a: R1):
+    return x.retract(x.local(y) * a)
+
+
+@function
+def way_se2(x: SE2, y: SE2, *, a: R1):
+    return x.retract(a * x.local(y))
+
+
+@function
+def no_way(x: SO3, y: SO3, *, a: R1):
+    """From x towards y, but not from x on."""
+    return y @ SO3.exp(a * x.local(y))
+
+
+FUSED = [between_so3, between_se3, relative_of_moved, way_so3, way_se3, way_se2]
+
+
+def test_an_interpolation_is_one_operation():
+    for f in (way_so3, way_se3, way_se2):
+        assert [n.operation.name for n in fused(f.plain).nodes()][-1] == "interpolate"
+    assert fused(no_way.plain) is no_way.plain
+    turned = way_so3.in_chart("ceres").plain
+    assert [n.operation.name for n in fused(turned).nodes()] == [n.operation.name for n in turned.nodes()]
+
+
+@pytest.mark.parametrize("function", FUSED, ids=lambda f: f.name)
 def test_fused_operations_have_the_same_values_and_jacobians(function):
     """At every special case: around 0, around pi, -q for q."""
     graph = function.plain

@@ -14,7 +14,7 @@
  *   x: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t), given
  *   out: 10 x 10 matrix
  *
- * Operations: 94
+ * Operations: 93
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -41,30 +41,30 @@ int liegen_groups_gal3_adjoint(
     const double x_vz = x[9];
     const double x_t = x[10];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = t0 * x_qx;
+    const double t6 = t2 * x_qw;
     const double t7 = t5 - t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 + t9;
     const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
+    const double t12 = 2.0 * x_qx;
     const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t14 = 1.0 - t3 - t13;
     const double t15 = x_qy * t2;
     const double t16 = x_qw * t12;
     const double t17 = t15 - t16;
     const double t18 = t8 - t9;
     const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
+    const double t20 = t1 - t13;
     const double t21 = -x_t;
     const double t22 = x_y + x_vy * t21;
-    const double t23 = x_z + x_vz * t21;
-    const double t24 = x_x + x_vx * t21;
+    const double t23 = x_z + t21 * x_vz;
+    const double t24 = x_x + t21 * x_vx;
     out[0] = t4;
     out[1] = t7;
     out[2] = t10;
@@ -125,9 +125,9 @@ int liegen_groups_gal3_adjoint(
     out[57] = t19 * t21;
     out[58] = t20 * t21;
     out[59] = x_vz;
-    out[60] = x_vy * t18 - x_vz * t11;
-    out[61] = x_vy * t19 - x_vz * t14;
-    out[62] = x_vy * t20 - x_vz * t17;
+    out[60] = t18 * x_vy - t11 * x_vz;
+    out[61] = t19 * x_vy - t14 * x_vz;
+    out[62] = t20 * x_vy - t17 * x_vz;
     out[63] = 0.0;
     out[64] = 0.0;
     out[65] = 0.0;
@@ -135,9 +135,9 @@ int liegen_groups_gal3_adjoint(
     out[67] = t7;
     out[68] = t10;
     out[69] = 0.0;
-    out[70] = x_vz * t4 - x_vx * t18;
-    out[71] = x_vz * t7 - x_vx * t19;
-    out[72] = x_vz * t10 - x_vx * t20;
+    out[70] = t4 * x_vz - t18 * x_vx;
+    out[71] = t7 * x_vz - t19 * x_vx;
+    out[72] = t10 * x_vz - t20 * x_vx;
     out[73] = 0.0;
     out[74] = 0.0;
     out[75] = 0.0;
@@ -145,9 +145,9 @@ int liegen_groups_gal3_adjoint(
     out[77] = t14;
     out[78] = t17;
     out[79] = 0.0;
-    out[80] = x_vx * t11 - x_vy * t4;
-    out[81] = x_vx * t14 - x_vy * t7;
-    out[82] = x_vx * t17 - x_vy * t10;
+    out[80] = t11 * x_vx - t4 * x_vy;
+    out[81] = t14 * x_vx - t7 * x_vy;
+    out[82] = t17 * x_vx - t10 * x_vy;
     out[83] = 0.0;
     out[84] = 0.0;
     out[85] = 0.0;

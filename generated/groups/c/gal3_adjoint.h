@@ -14,7 +14,7 @@
  *   x: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t), given
  *   out: 10 x 10 matrix
  *
- * Operations: 94
+ * Operations: 93
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

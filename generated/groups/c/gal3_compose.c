@@ -21,7 +21,7 @@
  *   out_D_x: 10 x 10, derivative of out by the tangent of x
  *   out_D_y: 10 x 10, derivative of out by the tangent of y
  *
- * Operations: 95 (outputs only), 198 (with Jacobians)
+ * Operations: 94 (outputs only), 196 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -60,37 +60,37 @@ int liegen_groups_gal3_compose_value(
     const double y_vz = y[9];
     const double y_t = y[10];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
+    const double t1 = x_qx * t0;
     const double t2 = x_qz * 2.0;
-    const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t3 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = 1.0 - x_qy * t0;
+    const double t6 = x_qz * t2;
     const double t7 = t5 - t6;
     const double t8 = x_qx * t2;
     const double t9 = x_qw * t0;
     const double t10 = t8 + t9;
-    const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
-    const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t11 = x_qx * 2.0;
+    const double t12 = x_qx * t11;
+    const double t13 = 1.0 - t6 - t12;
+    const double t14 = t1 + t3;
     const double t15 = x_qy * t2;
-    const double t16 = x_qw * t12;
+    const double t16 = x_qw * t11;
     const double t17 = t15 - t16;
-    const double t18 = t8 - t9;
-    const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
-    out[4] = x_x + (y_x * t4 + y_y * t7 + y_z * t10) + x_vx * y_t;
-    out[5] = x_y + (y_x * t11 + y_y * t14 + y_z * t17) + x_vy * y_t;
-    out[6] = x_z + (y_x * t18 + y_y * t19 + y_z * t20) + x_vz * y_t;
-    out[7] = x_vx + (y_vx * t4 + y_vy * t7 + y_vz * t10);
-    out[8] = x_vy + (y_vx * t11 + y_vy * t14 + y_vz * t17);
-    out[9] = x_vz + (y_vx * t18 + y_vy * t19 + y_vz * t20);
-    out[10] = x_t + y_t;
+    const double t18 = t15 + t16;
+    const double t19 = t8 - t9;
+    const double t20 = t5 - t12;
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    out[4] = x_vx * y_t + (y_z * t10 + (y_y * t4 + (x_x + y_x * t7)));
+    out[5] = y_t * x_vy + (y_z * t17 + (y_y * t13 + (x_y + y_x * t14)));
+    out[6] = y_t * x_vz + (y_z * t20 + (y_y * t18 + (x_z + y_x * t19)));
+    out[7] = t10 * y_vz + (t4 * y_vy + (x_vx + t7 * y_vx));
+    out[8] = t17 * y_vz + (t13 * y_vy + (x_vy + t14 * y_vx));
+    out[9] = t20 * y_vz + (t18 * y_vy + (x_vz + t19 * y_vx));
+    out[10] = y_t + x_t;
     return 0;
 }
 
@@ -126,31 +126,31 @@ int liegen_groups_gal3_compose(
     const double y_vz = y[9];
     const double y_t = y[10];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
+    const double t1 = x_qx * t0;
     const double t2 = x_qz * 2.0;
-    const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t3 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = 1.0 - x_qy * t0;
+    const double t6 = x_qz * t2;
     const double t7 = t5 - t6;
     const double t8 = x_qx * t2;
     const double t9 = x_qw * t0;
     const double t10 = t8 + t9;
-    const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
-    const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t11 = x_qx * 2.0;
+    const double t12 = x_qx * t11;
+    const double t13 = 1.0 - t6 - t12;
+    const double t14 = t1 + t3;
     const double t15 = x_qy * t2;
-    const double t16 = x_qw * t12;
+    const double t16 = x_qw * t11;
     const double t17 = t15 - t16;
-    const double t18 = t8 - t9;
-    const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
+    const double t18 = t15 + t16;
+    const double t19 = t8 - t9;
+    const double t20 = t5 - t12;
     const double t21 = y_qy * 2.0;
-    const double t22 = y_qy * t21;
+    const double t22 = 1.0 - y_qy * t21;
     const double t23 = y_qz * 2.0;
     const double t24 = y_qz * t23;
-    const double t25 = 1.0 - (t22 + t24);
+    const double t25 = t22 - t24;
     const double t26 = y_qx * t21;
     const double t27 = y_qw * t23;
     const double t28 = t26 + t27;
@@ -160,25 +160,25 @@ int liegen_groups_gal3_compose(
     const double t32 = t26 - t27;
     const double t33 = y_qx * 2.0;
     const double t34 = y_qx * t33;
-    const double t35 = 1.0 - (t24 + t34);
+    const double t35 = 1.0 - t24 - t34;
     const double t36 = y_qy * t23;
     const double t37 = y_qw * t33;
     const double t38 = t36 + t37;
     const double t39 = t29 + t30;
     const double t40 = t36 - t37;
-    const double t41 = 1.0 - (t22 + t34);
+    const double t41 = t22 - t34;
     const double t42 = -y_vx;
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
-    out[4] = x_x + (y_x * t4 + y_y * t7 + y_z * t10) + x_vx * y_t;
-    out[5] = x_y + (y_x * t11 + y_y * t14 + y_z * t17) + x_vy * y_t;
-    out[6] = x_z + (y_x * t18 + y_y * t19 + y_z * t20) + x_vz * y_t;
-    out[7] = x_vx + (y_vx * t4 + y_vy * t7 + y_vz * t10);
-    out[8] = x_vy + (y_vx * t11 + y_vy * t14 + y_vz * t17);
-    out[9] = x_vz + (y_vx * t18 + y_vy * t19 + y_vz * t20);
-    out[10] = x_t + y_t;
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    out[4] = x_vx * y_t + (y_z * t10 + (y_y * t4 + (x_x + y_x * t7)));
+    out[5] = y_t * x_vy + (y_z * t17 + (y_y * t13 + (x_y + y_x * t14)));
+    out[6] = y_t * x_vz + (y_z * t20 + (y_y * t18 + (x_z + y_x * t19)));
+    out[7] = t10 * y_vz + (t4 * y_vy + (x_vx + t7 * y_vx));
+    out[8] = t17 * y_vz + (t13 * y_vy + (x_vy + t14 * y_vx));
+    out[9] = t20 * y_vz + (t18 * y_vy + (x_vz + t19 * y_vx));
+    out[10] = y_t + x_t;
     if (out_D_x != NULL) {
         out_D_x[0] = t25;
         out_D_x[1] = t28;

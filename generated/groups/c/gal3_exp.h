@@ -19,7 +19,7 @@
  *   out: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t)
  *   out_D_d: 10 x 10, derivative of out by the tangent of d
  *
- * Operations: 153 (outputs only), 417 (with Jacobians)
+ * Operations: 152 (outputs only), 407 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

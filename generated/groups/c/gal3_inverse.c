@@ -18,7 +18,7 @@
  *   out: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t)
  *   out_D_x: 10 x 10, derivative of out by the tangent of x
  *
- * Operations: 64 (outputs only), 131 (with Jacobians)
+ * Operations: 63 (outputs only), 131 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -44,40 +44,40 @@ int liegen_groups_gal3_inverse_value(
     const double x_vy = x[8];
     const double x_vz = x[9];
     const double x_t = x[10];
-    const double t0 = x_qz * (-2.0);
-    const double t1 = x_qx * (-2.0);
-    const double t2 = x_qy * (-2.0);
-    const double t3 = x_qy * t0;
+    const double t0 = x_qz * 2.0;
+    const double t1 = x_qy * 2.0;
+    const double t2 = x_qx * 2.0;
+    const double t3 = x_qx * t0;
     const double t4 = x_qw * t1;
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
-    const double t7 = t4 - t3;
-    const double t8 = t6 + t5;
-    const double t9 = x_qx * t1;
-    const double t10 = x_qy * t2;
-    const double t11 = 1.0 + (t10 + t9);
-    const double t12 = t3 + t4;
-    const double t13 = x_qz * t0;
-    const double t14 = x_qx * t2;
+    const double t5 = x_qw * t2;
+    const double t6 = x_qy * t0;
+    const double t7 = t4 + t3;
+    const double t8 = t6 - t5;
+    const double t9 = 1.0 - x_qy * t1;
+    const double t10 = x_qx * t2;
+    const double t11 = t10 - t9;
+    const double t12 = x_qz * t0;
+    const double t13 = t10 + (t12 - 1.0);
+    const double t14 = t6 + t5;
     const double t15 = x_qw * t0;
-    const double t16 = 1.0 + (t13 + t9);
-    const double t17 = t15 - t14;
-    const double t18 = t14 + t15;
-    const double t19 = t6 - t5;
-    const double t20 = 1.0 + (t10 + t13);
-    const double t21 = x_vx * x_t - x_x;
-    const double t22 = x_vy * x_t - x_y;
-    const double t23 = x_vz * x_t - x_z;
+    const double t16 = x_qx * t1;
+    const double t17 = t16 - t15;
+    const double t18 = t16 + t15;
+    const double t19 = t9 - t12;
+    const double t20 = t4 - t3;
+    const double t21 = x_x - x_vx * x_t;
+    const double t22 = x_y - x_t * x_vy;
+    const double t23 = x_z - x_t * x_vz;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = t20 * t21 - t18 * t22 + t19 * t23;
-    out[5] = t21 * t17 + t22 * t16 - t23 * t12;
-    out[6] = t22 * t7 - t21 * t8 + t23 * t11;
-    out[7] = x_vy * t18 - x_vx * t20 - x_vz * t19;
-    out[8] = x_vz * t12 - (x_vx * t17 + x_vy * t16);
-    out[9] = x_vx * t8 - x_vy * t7 - x_vz * t11;
+    out[4] = t20 * t23 - (t19 * t21 + t18 * t22);
+    out[5] = t22 * t13 - t21 * t17 - t23 * t14;
+    out[6] = t23 * t11 - (t22 * t8 + t21 * t7);
+    out[7] = t20 * x_vz - (t19 * x_vx + t18 * x_vy);
+    out[8] = x_vy * t13 - x_vx * t17 - x_vz * t14;
+    out[9] = x_vz * t11 - (x_vy * t8 + x_vx * t7);
     out[10] = -x_t;
     return 0;
 }

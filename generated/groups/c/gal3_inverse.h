@@ -18,7 +18,7 @@
  *   out: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t)
  *   out_D_x: 10 x 10, derivative of out by the tangent of x
  *
- * Operations: 64 (outputs only), 131 (with Jacobians)
+ * Operations: 63 (outputs only), 131 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

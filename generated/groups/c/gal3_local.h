@@ -21,7 +21,7 @@
  *   out_D_x: 10 x 10, derivative of out by the tangent of x
  *   out_D_y: 10 x 10, derivative of out by the tangent of y
  *
- * Operations: 224 (outputs only), 432 (with Jacobians)
+ * Operations: 222 (outputs only), 421 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

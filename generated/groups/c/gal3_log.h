@@ -18,7 +18,7 @@
  *   out: 10, R10 (v0, v1, v2, v3, v4, v5, v6, v7, v8, v9)
  *   out_D_x: 10 x 10, derivative of out by the tangent of x
  *
- * Operations: 129 (outputs only), 309 (with Jacobians)
+ * Operations: 129 (outputs only), 300 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

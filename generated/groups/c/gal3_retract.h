@@ -22,7 +22,7 @@
  *   out_D_x: 10 x 10, derivative of out by the tangent of x
  *   out_D_d: 10 x 10, derivative of out by the tangent of d
  *
- * Operations: 248 (outputs only), 615 (with Jacobians)
+ * Operations: 246 (outputs only), 603 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

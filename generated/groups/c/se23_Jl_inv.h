@@ -15,7 +15,7 @@
  *   d: 9, R9 (v0, v1, v2, v3, v4, v5, v6, v7, v8), given
  *   out: 9 x 9 matrix
  *
- * Operations: 178
+ * Operations: 173
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -14,7 +14,7 @@
  *   x: 10, SE23 (qx, qy, qz, qw, x, y, z, vx, vy, vz), given
  *   out: 9 x 9 matrix
  *
- * Operations: 78
+ * Operations: 77
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -21,7 +21,7 @@
  *   out_D_x: 9 x 9, derivative of out by the tangent of x
  *   out_D_y: 9 x 9, derivative of out by the tangent of y
  *
- * Operations: 88 (outputs only), 166 (with Jacobians)
+ * Operations: 87 (outputs only), 166 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -57,43 +57,43 @@ int liegen_groups_se23_between_value(
     const double y_vx = y[7];
     const double y_vy = y[8];
     const double y_vz = y[9];
-    const double t0 = x_qy * (-2.0);
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * (-2.0);
+    const double t0 = x_qy * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = x_qz * 2.0;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 + (t1 + t3);
-    const double t5 = y_x - x_x;
+    const double t4 = t1 - t3;
+    const double t5 = x_x - y_x;
     const double t6 = x_qx * t0;
     const double t7 = x_qw * t2;
     const double t8 = t6 + t7;
-    const double t9 = y_y - x_y;
+    const double t9 = x_y - y_y;
     const double t10 = x_qw * t0;
     const double t11 = x_qx * t2;
     const double t12 = t10 - t11;
-    const double t13 = y_z - x_z;
-    const double t14 = t7 - t6;
-    const double t15 = x_qx * (-2.0);
-    const double t16 = x_qx * t15;
-    const double t17 = 1.0 + (t3 + t16);
+    const double t13 = x_z - y_z;
+    const double t14 = x_qx * 2.0;
+    const double t15 = x_qx * t14;
+    const double t16 = t15 + (t3 - 1.0);
+    const double t17 = t6 - t7;
     const double t18 = x_qy * t2;
-    const double t19 = x_qw * t15;
+    const double t19 = x_qw * t14;
     const double t20 = t18 + t19;
-    const double t21 = t19 - t18;
+    const double t21 = t18 - t19;
     const double t22 = t10 + t11;
-    const double t23 = 1.0 + (t1 + t16);
-    const double t24 = y_vx - x_vx;
-    const double t25 = y_vy - x_vy;
+    const double t23 = t15 - t1;
+    const double t24 = y_vy - x_vy;
+    const double t25 = x_vx - y_vx;
     const double t26 = y_vz - x_vz;
-    out[0] = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy;
-    out[1] = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx;
-    out[2] = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw;
-    out[3] = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz;
-    out[4] = t4 * t5 - t8 * t9 + t12 * t13;
-    out[5] = t5 * t14 + t9 * t17 - t13 * t20;
-    out[6] = t9 * t21 - t5 * t22 + t13 * t23;
-    out[7] = t4 * t24 - t8 * t25 + t12 * t26;
-    out[8] = t14 * t24 + t17 * t25 - t20 * t26;
-    out[9] = t21 * t25 - t22 * t24 + t23 * t26;
+    out[0] = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz);
+    out[1] = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
+    out[2] = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
+    out[3] = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx));
+    out[4] = t12 * t13 - (t4 * t5 + t8 * t9);
+    out[5] = t9 * t16 - t5 * t17 - t13 * t20;
+    out[6] = t13 * t23 - (t9 * t21 + t5 * t22);
+    out[7] = t8 * t24 - t4 * t25 - t12 * t26;
+    out[8] = t20 * t26 - (t17 * t25 + t16 * t24);
+    out[9] = t21 * t24 - t22 * t25 - t23 * t26;
     return 0;
 }
 

@@ -21,7 +21,7 @@
  *   out_D_x: 9 x 9, derivative of out by the tangent of x
  *   out_D_y: 9 x 9, derivative of out by the tangent of y
  *
- * Operations: 88 (outputs only), 166 (with Jacobians)
+ * Operations: 87 (outputs only), 166 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

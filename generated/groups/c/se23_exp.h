@@ -19,7 +19,7 @@
  *   out: 10, SE23 (qx, qy, qz, qw, x, y, z, vx, vy, vz)
  *   out_D_d: 9 x 9, derivative of out by the tangent of d
  *
- * Operations: 95 (outputs only), 242 (with Jacobians)
+ * Operations: 94 (outputs only), 236 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

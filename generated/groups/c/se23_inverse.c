@@ -18,7 +18,7 @@
  *   out: 10, SE23 (qx, qy, qz, qw, x, y, z, vx, vy, vz)
  *   out_D_x: 9 x 9, derivative of out by the tangent of x
  *
- * Operations: 57 (outputs only), 111 (with Jacobians)
+ * Operations: 56 (outputs only), 110 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -43,37 +43,37 @@ int liegen_groups_se23_inverse_value(
     const double x_vx = x[7];
     const double x_vy = x[8];
     const double x_vz = x[9];
-    const double t0 = x_qy * (-2.0);
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * (-2.0);
+    const double t0 = x_qy * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = x_qz * 2.0;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 + (t1 + t3);
+    const double t4 = t1 - t3;
     const double t5 = x_qx * t0;
     const double t6 = x_qw * t2;
     const double t7 = t5 + t6;
     const double t8 = x_qw * t0;
     const double t9 = x_qx * t2;
     const double t10 = t8 - t9;
-    const double t11 = t6 - t5;
-    const double t12 = x_qx * (-2.0);
-    const double t13 = x_qx * t12;
-    const double t14 = 1.0 + (t3 + t13);
+    const double t11 = x_qx * 2.0;
+    const double t12 = x_qx * t11;
+    const double t13 = t12 + (t3 - 1.0);
+    const double t14 = t5 - t6;
     const double t15 = x_qy * t2;
-    const double t16 = x_qw * t12;
+    const double t16 = x_qw * t11;
     const double t17 = t15 + t16;
-    const double t18 = t16 - t15;
+    const double t18 = t15 - t16;
     const double t19 = t8 + t9;
-    const double t20 = 1.0 + (t1 + t13);
+    const double t20 = t12 - t1;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = x_y * t7 - x_x * t4 - x_z * t10;
-    out[5] = x_z * t17 - (x_x * t11 + x_y * t14);
-    out[6] = x_x * t19 - x_y * t18 - x_z * t20;
-    out[7] = x_vy * t7 - x_vx * t4 - x_vz * t10;
-    out[8] = x_vz * t17 - (x_vx * t11 + x_vy * t14);
-    out[9] = x_vx * t19 - x_vy * t18 - x_vz * t20;
+    out[4] = x_z * t10 - (x_x * t4 + x_y * t7);
+    out[5] = x_y * t13 - x_x * t14 - x_z * t17;
+    out[6] = x_z * t20 - (x_y * t18 + x_x * t19);
+    out[7] = t10 * x_vz - (t4 * x_vx + t7 * x_vy);
+    out[8] = t13 * x_vy - t14 * x_vx - t17 * x_vz;
+    out[9] = t20 * x_vz - (t18 * x_vy + t19 * x_vx);
     return 0;
 }
 
@@ -95,36 +95,36 @@ int liegen_groups_se23_inverse(
     const double x_vy = x[8];
     const double x_vz = x[9];
     const double t0 = x_qy * (-2.0);
-    const double t1 = x_qy * t0;
+    const double t1 = -1.0 - x_qy * t0;
     const double t2 = x_qz * (-2.0);
     const double t3 = x_qz * t2;
-    const double t4 = -1.0 - (t1 + t3);
+    const double t4 = t1 - t3;
     const double t5 = x_qx * t0;
     const double t6 = x_qw * t2;
     const double t7 = t5 + t6;
-    const double t8 = x_qw * t0;
-    const double t9 = x_qx * t2;
-    const double t10 = t9 - t8;
+    const double t8 = x_qx * t2;
+    const double t9 = x_qw * t0;
+    const double t10 = t8 - t9;
     const double t11 = t5 - t6;
     const double t12 = x_qx * (-2.0);
     const double t13 = x_qx * t12;
-    const double t14 = -1.0 - (t3 + t13);
+    const double t14 = -1.0 - t3 - t13;
     const double t15 = x_qy * t2;
     const double t16 = x_qw * t12;
     const double t17 = t15 + t16;
     const double t18 = t15 - t16;
-    const double t19 = t8 + t9;
-    const double t20 = -1.0 - (t1 + t13);
+    const double t19 = t9 + t8;
+    const double t20 = t1 - t13;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = x_x * t4 + x_y * t7 + x_z * t10;
-    out[5] = x_x * t11 + x_y * t14 + x_z * t17;
-    out[6] = x_y * t18 + x_x * t19 + x_z * t20;
-    out[7] = x_vx * t4 + x_vy * t7 + x_vz * t10;
-    out[8] = x_vx * t11 + x_vy * t14 + x_vz * t17;
-    out[9] = x_vy * t18 + x_vx * t19 + x_vz * t20;
+    out[4] = x_z * t10 + (x_x * t4 + x_y * t7);
+    out[5] = x_z * t17 + (x_x * t11 + x_y * t14);
+    out[6] = x_z * t20 + (x_y * t18 + x_x * t19);
+    out[7] = t10 * x_vz + (t4 * x_vx + t7 * x_vy);
+    out[8] = t17 * x_vz + (t11 * x_vx + t14 * x_vy);
+    out[9] = t20 * x_vz + (t18 * x_vy + t19 * x_vx);
     if (out_D_x != NULL) {
         out_D_x[0] = t4;
         out_D_x[1] = t11;
@@ -153,7 +153,7 @@ int liegen_groups_se23_inverse(
         out_D_x[24] = 0.0;
         out_D_x[25] = 0.0;
         out_D_x[26] = 0.0;
-        out_D_x[27] = x_y * t10 - x_z * t7;
+        out_D_x[27] = x_y * t10 - t7 * x_z;
         out_D_x[28] = x_y * t17 - x_z * t14;
         out_D_x[29] = x_y * t20 - x_z * t18;
         out_D_x[30] = t4;
@@ -162,7 +162,7 @@ int liegen_groups_se23_inverse(
         out_D_x[33] = 0.0;
         out_D_x[34] = 0.0;
         out_D_x[35] = 0.0;
-        out_D_x[36] = x_z * t4 - x_x * t10;
+        out_D_x[36] = t4 * x_z - x_x * t10;
         out_D_x[37] = x_z * t11 - x_x * t17;
         out_D_x[38] = x_z * t19 - x_x * t20;
         out_D_x[39] = t7;
@@ -171,7 +171,7 @@ int liegen_groups_se23_inverse(
         out_D_x[42] = 0.0;
         out_D_x[43] = 0.0;
         out_D_x[44] = 0.0;
-        out_D_x[45] = x_x * t7 - x_y * t4;
+        out_D_x[45] = x_x * t7 - t4 * x_y;
         out_D_x[46] = x_x * t14 - x_y * t11;
         out_D_x[47] = x_x * t18 - x_y * t19;
         out_D_x[48] = t10;
@@ -180,27 +180,27 @@ int liegen_groups_se23_inverse(
         out_D_x[51] = 0.0;
         out_D_x[52] = 0.0;
         out_D_x[53] = 0.0;
-        out_D_x[54] = x_vy * t10 - x_vz * t7;
-        out_D_x[55] = x_vy * t17 - x_vz * t14;
-        out_D_x[56] = x_vy * t20 - x_vz * t18;
+        out_D_x[54] = t10 * x_vy - t7 * x_vz;
+        out_D_x[55] = t17 * x_vy - t14 * x_vz;
+        out_D_x[56] = t20 * x_vy - t18 * x_vz;
         out_D_x[57] = 0.0;
         out_D_x[58] = 0.0;
         out_D_x[59] = 0.0;
         out_D_x[60] = t4;
         out_D_x[61] = t11;
         out_D_x[62] = t19;
-        out_D_x[63] = x_vz * t4 - x_vx * t10;
-        out_D_x[64] = x_vz * t11 - x_vx * t17;
-        out_D_x[65] = x_vz * t19 - x_vx * t20;
+        out_D_x[63] = t4 * x_vz - t10 * x_vx;
+        out_D_x[64] = t11 * x_vz - t17 * x_vx;
+        out_D_x[65] = t19 * x_vz - t20 * x_vx;
         out_D_x[66] = 0.0;
         out_D_x[67] = 0.0;
         out_D_x[68] = 0.0;
         out_D_x[69] = t7;
         out_D_x[70] = t14;
         out_D_x[71] = t18;
-        out_D_x[72] = x_vx * t7 - x_vy * t4;
-        out_D_x[73] = x_vx * t14 - x_vy * t11;
-        out_D_x[74] = x_vx * t18 - x_vy * t19;
+        out_D_x[72] = t7 * x_vx - t4 * x_vy;
+        out_D_x[73] = t14 * x_vx - t11 * x_vy;
+        out_D_x[74] = t18 * x_vx - t19 * x_vy;
         out_D_x[75] = 0.0;
         out_D_x[76] = 0.0;
         out_D_x[77] = 0.0;

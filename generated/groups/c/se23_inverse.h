@@ -18,7 +18,7 @@
  *   out: 10, SE23 (qx, qy, qz, qw, x, y, z, vx, vy, vz)
  *   out_D_x: 9 x 9, derivative of out by the tangent of x
  *
- * Operations: 57 (outputs only), 111 (with Jacobians)
+ * Operations: 56 (outputs only), 110 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -18,7 +18,7 @@
  *   out: 9, R9 (v0, v1, v2, v3, v4, v5, v6, v7, v8)
  *   out_D_x: 9 x 9, derivative of out by the tangent of x
  *
- * Operations: 105 (outputs only), 224 (with Jacobians)
+ * Operations: 105 (outputs only), 218 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -22,7 +22,7 @@
  *   out_D_x: 9 x 9, derivative of out by the tangent of x
  *   out_D_d: 9 x 9, derivative of out by the tangent of d
  *
- * Operations: 183 (outputs only), 408 (with Jacobians)
+ * Operations: 181 (outputs only), 400 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

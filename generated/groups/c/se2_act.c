@@ -43,8 +43,8 @@ int liegen_groups_se2_act_value(
     const double x_y = x[3];
     const double p_x = p[0];
     const double p_y = p[1];
-    out[0] = x_x + (x_c * p_x - x_s * p_y);
-    out[1] = x_y + (x_s * p_x + x_c * p_y);
+    out[0] = x_x + x_c * p_x - x_s * p_y;
+    out[1] = x_c * p_y + (x_y + p_x * x_s);
     return 0;
 }
 

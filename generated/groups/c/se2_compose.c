@@ -45,9 +45,9 @@ int liegen_groups_se2_compose_value(
     const double y_x = y[2];
     const double y_y = y[3];
     out[0] = x_c * y_c - x_s * y_s;
-    out[1] = x_s * y_c + x_c * y_s;
-    out[2] = x_x + (x_c * y_x - x_s * y_y);
-    out[3] = x_y + (x_s * y_x + x_c * y_y);
+    out[1] = y_c * x_s + x_c * y_s;
+    out[2] = x_x + x_c * y_x - x_s * y_y;
+    out[3] = x_c * y_y + (x_y + x_s * y_x);
     return 0;
 }
 
@@ -69,9 +69,9 @@ int liegen_groups_se2_compose(
     const double y_x = y[2];
     const double y_y = y[3];
     out[0] = x_c * y_c - x_s * y_s;
-    out[1] = x_s * y_c + x_c * y_s;
-    out[2] = x_x + (x_c * y_x - x_s * y_y);
-    out[3] = x_y + (x_s * y_x + x_c * y_y);
+    out[1] = y_c * x_s + x_c * y_s;
+    out[2] = x_x + x_c * y_x - x_s * y_y;
+    out[3] = x_c * y_y + (x_y + x_s * y_x);
     if (out_D_x != NULL) {
         out_D_x[0] = y_c;
         out_D_x[1] = y_s;

@@ -46,17 +46,17 @@ int liegen_groups_se2_retract_value(
     const double d_z = d[2];
     const double t0 = cos(d_z);
     const double t1 = sin(d_z);
-    const double t2 = 0.25 * (d_z * d_z);
+    const double t2 = d_z * (d_z * 0.25);
     const double t3 = sqrt(t2 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t2);
     const double t4 = sin(t3) / t3;
     const double t5 = t4 * cos(t3);
-    const double t6 = 0.5 * (d_z * (t4 * t4));
+    const double t6 = t4 * (t4 * (d_z * 0.5));
     const double t7 = d_x * t5 - d_y * t6;
-    const double t8 = d_x * t6 + d_y * t5;
+    const double t8 = d_x * t6 + t5 * d_y;
     out[0] = x_c * t0 - x_s * t1;
-    out[1] = x_s * t0 + x_c * t1;
-    out[2] = x_x + (x_c * t7 - x_s * t8);
-    out[3] = x_y + (x_s * t7 + x_c * t8);
+    out[1] = t0 * x_s + x_c * t1;
+    out[2] = x_x + x_c * t7 - x_s * t8;
+    out[3] = x_c * t8 + (x_y + x_s * t7);
     return 0;
 }
 
@@ -86,17 +86,17 @@ int liegen_groups_se2_retract(
     const double t7 = t0 * (t6 - 1.605889346154661e-10) + 2.5052106052920182e-08;
     const double t8 = t0 * (t0 * t7 - 2.755731920385087e-06) + 0.0001984126984118024;
     const double t9 = t0 * (t0 * t8 - 0.008333333333333161) + 0.16666666666666666;
-    const double t10 = 0.5 * (t4 * t4);
+    const double t10 = t4 * (t4 * 0.5);
     const double t11 = d_z * (t0 < 3.0 ? t9 : (1.0 - t5) * (0.25 / t2));
     const double t12 = d_z * t10;
     const double t13 = d_x * t5 - d_y * t12;
-    const double t14 = d_x * t12 + d_y * t5;
+    const double t14 = d_x * t12 + t5 * d_y;
     const double t15 = cos(d_z);
     const double t16 = sin(d_z);
     out[0] = x_c * t15 - x_s * t16;
-    out[1] = x_s * t15 + x_c * t16;
-    out[2] = x_x + (x_c * t13 - x_s * t14);
-    out[3] = x_y + (x_s * t13 + x_c * t14);
+    out[1] = t15 * x_s + x_c * t16;
+    out[2] = x_x + x_c * t13 - x_s * t14;
+    out[3] = x_c * t14 + (x_y + x_s * t13);
     if (out_D_x != NULL) {
         out_D_x[0] = t15;
         out_D_x[1] = t16;

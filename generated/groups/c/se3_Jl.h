@@ -15,7 +15,7 @@
  *   d: 6, R6 (v0, v1, v2, v3, v4, v5), given
  *   out: 6 x 6 matrix
  *
- * Operations: 149
+ * Operations: 148
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

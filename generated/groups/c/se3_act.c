@@ -22,7 +22,7 @@
  *   out_D_x: 3 x 6, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 42 (outputs only), 69 (with Jacobians)
+ * Operations: 41 (outputs only), 68 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -49,23 +49,23 @@ int liegen_groups_se3_act_value(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
-    const double t3 = x_qz * t2;
-    const double t4 = x_qx * t0;
-    const double t5 = x_qw * t2;
-    const double t6 = p_x * (1.0 - (t1 + t3)) + p_y * (t4 - t5);
-    const double t7 = x_qx * t2;
-    const double t8 = x_qw * t0;
-    const double t9 = x_qx * 2.0;
+    const double t1 = t0 * x_qx;
+    const double t2 = 2.0 * x_qz;
+    const double t3 = t2 * x_qw;
+    const double t4 = 1.0 - x_qy * t0;
+    const double t5 = x_qz * t2;
+    const double t6 = p_y * (t1 - t3) + (x_x + p_x * (t4 - t5));
+    const double t7 = t2 * x_qx;
+    const double t8 = t0 * x_qw;
+    const double t9 = 2.0 * x_qx;
     const double t10 = x_qx * t9;
-    const double t11 = p_x * (t4 + t5) + p_y * (1.0 - (t3 + t10));
+    const double t11 = p_y * (1.0 - t5 - t10) + (x_y + p_x * (t1 + t3));
     const double t12 = x_qy * t2;
     const double t13 = x_qw * t9;
-    const double t14 = p_x * (t7 - t8) + p_y * (t12 + t13);
-    out[0] = x_x + (t6 + p_z * (t7 + t8));
-    out[1] = x_y + (t11 + p_z * (t12 - t13));
-    out[2] = x_z + (t14 + p_z * (1.0 - (t1 + t10)));
+    const double t14 = p_y * (t12 + t13) + (x_z + p_x * (t7 - t8));
+    out[0] = p_z * (t7 + t8) + t6;
+    out[1] = p_z * (t12 - t13) + t11;
+    out[2] = p_z * (t4 - t10) + t14;
     return 0;
 }
 
@@ -89,58 +89,58 @@ int liegen_groups_se3_act(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
-    const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t1 = t0 * x_qx;
+    const double t2 = 2.0 * x_qz;
+    const double t3 = t2 * x_qw;
+    const double t4 = t1 - t3;
+    const double t5 = 1.0 - x_qy * t0;
+    const double t6 = x_qz * t2;
     const double t7 = t5 - t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 + t9;
-    const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
-    const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t11 = 2.0 * x_qx;
+    const double t12 = x_qx * t11;
+    const double t13 = 1.0 - t6 - t12;
+    const double t14 = t1 + t3;
     const double t15 = x_qy * t2;
-    const double t16 = x_qw * t12;
+    const double t16 = x_qw * t11;
     const double t17 = t15 - t16;
-    const double t18 = t8 - t9;
-    const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
-    out[0] = x_x + (p_x * t4 + p_y * t7 + p_z * t10);
-    out[1] = x_y + (p_x * t11 + p_y * t14 + p_z * t17);
-    out[2] = x_z + (p_x * t18 + p_y * t19 + p_z * t20);
+    const double t18 = t15 + t16;
+    const double t19 = t8 - t9;
+    const double t20 = t5 - t12;
+    out[0] = p_z * t10 + (p_y * t4 + (x_x + p_x * t7));
+    out[1] = p_z * t17 + (p_y * t13 + (x_y + p_x * t14));
+    out[2] = p_z * t20 + (p_y * t18 + (x_z + p_x * t19));
     if (out_D_x != NULL) {
-        out_D_x[0] = p_y * t10 - p_z * t7;
-        out_D_x[1] = p_z * t4 - p_x * t10;
-        out_D_x[2] = p_x * t7 - p_y * t4;
-        out_D_x[3] = t4;
-        out_D_x[4] = t7;
+        out_D_x[0] = p_y * t10 - t4 * p_z;
+        out_D_x[1] = t7 * p_z - p_x * t10;
+        out_D_x[2] = p_x * t4 - t7 * p_y;
+        out_D_x[3] = t7;
+        out_D_x[4] = t4;
         out_D_x[5] = t10;
-        out_D_x[6] = p_y * t17 - p_z * t14;
-        out_D_x[7] = p_z * t11 - p_x * t17;
-        out_D_x[8] = p_x * t14 - p_y * t11;
-        out_D_x[9] = t11;
-        out_D_x[10] = t14;
+        out_D_x[6] = p_y * t17 - p_z * t13;
+        out_D_x[7] = p_z * t14 - p_x * t17;
+        out_D_x[8] = p_x * t13 - p_y * t14;
+        out_D_x[9] = t14;
+        out_D_x[10] = t13;
         out_D_x[11] = t17;
-        out_D_x[12] = p_y * t20 - p_z * t19;
-        out_D_x[13] = p_z * t18 - p_x * t20;
-        out_D_x[14] = p_x * t19 - p_y * t18;
-        out_D_x[15] = t18;
-        out_D_x[16] = t19;
+        out_D_x[12] = p_y * t20 - p_z * t18;
+        out_D_x[13] = p_z * t19 - p_x * t20;
+        out_D_x[14] = p_x * t18 - p_y * t19;
+        out_D_x[15] = t19;
+        out_D_x[16] = t18;
         out_D_x[17] = t20;
     }
     if (out_D_p != NULL) {
-        out_D_p[0] = t4;
-        out_D_p[1] = t7;
+        out_D_p[0] = t7;
+        out_D_p[1] = t4;
         out_D_p[2] = t10;
-        out_D_p[3] = t11;
-        out_D_p[4] = t14;
+        out_D_p[3] = t14;
+        out_D_p[4] = t13;
         out_D_p[5] = t17;
-        out_D_p[6] = t18;
-        out_D_p[7] = t19;
+        out_D_p[6] = t19;
+        out_D_p[7] = t18;
         out_D_p[8] = t20;
     }
     return 0;

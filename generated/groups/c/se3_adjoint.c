@@ -14,7 +14,7 @@
  *   x: 7, SE3 (qx, qy, qz, qw, x, y, z), given
  *   out: 6 x 6 matrix
  *
- * Operations: 51
+ * Operations: 50
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -37,26 +37,26 @@ int liegen_groups_se3_adjoint(
     const double x_y = x[5];
     const double x_z = x[6];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = t0 * x_qx;
+    const double t6 = t2 * x_qw;
     const double t7 = t5 - t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 + t9;
     const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
+    const double t12 = 2.0 * x_qx;
     const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t14 = 1.0 - t3 - t13;
     const double t15 = x_qy * t2;
     const double t16 = x_qw * t12;
     const double t17 = t15 - t16;
     const double t18 = t8 - t9;
     const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
+    const double t20 = t1 - t13;
     out[0] = t4;
     out[1] = t7;
     out[2] = t10;
@@ -75,21 +75,21 @@ int liegen_groups_se3_adjoint(
     out[15] = 0.0;
     out[16] = 0.0;
     out[17] = 0.0;
-    out[18] = x_y * t18 - x_z * t11;
-    out[19] = x_y * t19 - x_z * t14;
-    out[20] = x_y * t20 - x_z * t17;
+    out[18] = t18 * x_y - t11 * x_z;
+    out[19] = t19 * x_y - t14 * x_z;
+    out[20] = t20 * x_y - t17 * x_z;
     out[21] = t4;
     out[22] = t7;
     out[23] = t10;
-    out[24] = x_z * t4 - x_x * t18;
-    out[25] = x_z * t7 - x_x * t19;
-    out[26] = x_z * t10 - x_x * t20;
+    out[24] = t4 * x_z - t18 * x_x;
+    out[25] = t7 * x_z - t19 * x_x;
+    out[26] = t10 * x_z - t20 * x_x;
     out[27] = t11;
     out[28] = t14;
     out[29] = t17;
-    out[30] = x_x * t11 - x_y * t4;
-    out[31] = x_x * t14 - x_y * t7;
-    out[32] = x_x * t17 - x_y * t10;
+    out[30] = t11 * x_x - t4 * x_y;
+    out[31] = t14 * x_x - t7 * x_y;
+    out[32] = t17 * x_x - t10 * x_y;
     out[33] = t18;
     out[34] = t19;
     out[35] = t20;

@@ -14,7 +14,7 @@
  *   x: 7, SE3 (qx, qy, qz, qw, x, y, z), given
  *   out: 6 x 6 matrix
  *
- * Operations: 51
+ * Operations: 50
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

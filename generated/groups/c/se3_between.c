@@ -51,19 +51,19 @@ int liegen_groups_se3_between_value(
     const double y_x = y[4];
     const double y_y = y[5];
     const double y_z = y[6];
-    const double t0 = y_x - x_x;
-    const double t1 = y_y - x_y;
-    const double t2 = y_z - x_z;
-    const double t3 = (x_qz * t1 - x_qy * t2) * 2.0;
-    const double t4 = 2.0 * (x_qx * t2 - x_qz * t0);
-    const double t5 = 2.0 * (x_qy * t0 - x_qx * t1);
-    out[0] = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy;
-    out[1] = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx;
-    out[2] = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw;
-    out[3] = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz;
-    out[4] = t0 + x_qw * t3 + (x_qz * t4 - x_qy * t5);
-    out[5] = t1 + x_qw * t4 + (x_qx * t5 - x_qz * t3);
-    out[6] = t2 + x_qw * t5 + (x_qy * t3 - x_qx * t4);
+    const double t0 = x_z - y_z;
+    const double t1 = x_x - y_x;
+    const double t2 = 2.0 * (x_qx * t0 - x_qz * t1);
+    const double t3 = x_y - y_y;
+    const double t4 = (x_qz * t3 - x_qy * t0) * 2.0;
+    const double t5 = 2.0 * (x_qy * t1 - x_qx * t3);
+    out[0] = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz);
+    out[1] = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
+    out[2] = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
+    out[3] = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx));
+    out[4] = x_qy * t5 - (x_qz * t2 + (t1 + x_qw * t4));
+    out[5] = x_qz * t4 - (x_qx * t5 + (t3 + x_qw * t2));
+    out[6] = x_qx * t2 - (x_qy * t4 + (t0 + x_qw * t5));
     return 0;
 }
 

@@ -21,7 +21,7 @@
  *   out_D_x: 6 x 6, derivative of out by the tangent of x
  *   out_D_y: 6 x 6, derivative of out by the tangent of y
  *
- * Operations: 61 (outputs only), 112 (with Jacobians)
+ * Operations: 61 (outputs only), 111 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -54,13 +54,13 @@ int liegen_groups_se3_compose_value(
     const double t0 = 2.0 * (x_qx * y_y - x_qy * y_x);
     const double t1 = 2.0 * (x_qz * y_x - x_qx * y_z);
     const double t2 = (x_qy * y_z - x_qz * y_y) * 2.0;
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
-    out[4] = x_x + (y_x + x_qw * t2 + (x_qy * t0 - x_qz * t1));
-    out[5] = x_y + (y_y + x_qw * t1 + (x_qz * t2 - x_qx * t0));
-    out[6] = x_z + (y_z + x_qw * t0 + (x_qx * t1 - x_qy * t2));
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    out[4] = x_qy * t0 + (x_qw * t2 + (x_x + y_x)) - x_qz * t1;
+    out[5] = x_qz * t2 + (x_qw * t1 + (y_y + x_y)) - x_qx * t0;
+    out[6] = x_qx * t1 + (x_qw * t0 + (y_z + x_z)) - x_qy * t2;
     return 0;
 }
 
@@ -91,10 +91,10 @@ int liegen_groups_se3_compose(
     const double t1 = 2.0 * (x_qx * y_y - x_qy * y_x);
     const double t2 = 2.0 * (x_qz * y_x - x_qx * y_z);
     const double t3 = y_qy * 2.0;
-    const double t4 = y_qy * t3;
+    const double t4 = 1.0 - y_qy * t3;
     const double t5 = y_qz * 2.0;
     const double t6 = y_qz * t5;
-    const double t7 = 1.0 - (t4 + t6);
+    const double t7 = t4 - t6;
     const double t8 = y_qx * t3;
     const double t9 = y_qw * t5;
     const double t10 = t8 + t9;
@@ -104,20 +104,20 @@ int liegen_groups_se3_compose(
     const double t14 = t8 - t9;
     const double t15 = y_qx * 2.0;
     const double t16 = y_qx * t15;
-    const double t17 = 1.0 - (t6 + t16);
+    const double t17 = 1.0 - t6 - t16;
     const double t18 = y_qy * t5;
     const double t19 = y_qw * t15;
     const double t20 = t18 + t19;
     const double t21 = t11 + t12;
     const double t22 = t18 - t19;
-    const double t23 = 1.0 - (t4 + t16);
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
-    out[4] = x_x + (y_x + x_qw * t0 + (x_qy * t1 - x_qz * t2));
-    out[5] = x_y + (y_y + x_qw * t2 + (x_qz * t0 - x_qx * t1));
-    out[6] = x_z + (y_z + x_qw * t1 + (x_qx * t2 - x_qy * t0));
+    const double t23 = t4 - t16;
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    out[4] = x_qy * t1 + (x_qw * t0 + (x_x + y_x)) - x_qz * t2;
+    out[5] = x_qz * t0 + (x_qw * t2 + (y_y + x_y)) - x_qx * t1;
+    out[6] = x_qx * t2 + (x_qw * t1 + (y_z + x_z)) - x_qy * t0;
     if (out_D_x != NULL) {
         out_D_x[0] = t7;
         out_D_x[1] = t10;

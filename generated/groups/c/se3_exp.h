@@ -19,7 +19,7 @@
  *   out: 7, SE3 (qx, qy, qz, qw, x, y, z)
  *   out_D_d: 6 x 6, derivative of out by the tangent of d
  *
- * Operations: 80 (outputs only), 168 (with Jacobians)
+ * Operations: 79 (outputs only), 166 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

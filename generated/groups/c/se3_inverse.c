@@ -18,7 +18,7 @@
  *   out: 7, SE3 (qx, qy, qz, qw, x, y, z)
  *   out_D_x: 6 x 6, derivative of out by the tangent of x
  *
- * Operations: 33 (outputs only), 84 (with Jacobians)
+ * Operations: 33 (outputs only), 83 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -40,16 +40,16 @@ int liegen_groups_se3_inverse_value(
     const double x_x = x[4];
     const double x_y = x[5];
     const double x_z = x[6];
-    const double t0 = 2.0 * (x_qy * x_x - x_qx * x_y);
-    const double t1 = 2.0 * (x_qx * x_z - x_qz * x_x);
-    const double t2 = (x_qz * x_y - x_qy * x_z) * 2.0;
+    const double t0 = 2.0 * (x_qx * x_z - x_qz * x_x);
+    const double t1 = (x_qz * x_y - x_qy * x_z) * 2.0;
+    const double t2 = 2.0 * (x_qy * x_x - x_qx * x_y);
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = x_qy * t0 - x_qz * t1 - (x_x + x_qw * t2);
-    out[5] = x_qz * t2 - x_qx * t0 - (x_y + x_qw * t1);
-    out[6] = x_qx * t1 - x_qy * t2 - (x_z + x_qw * t0);
+    out[4] = x_qy * t2 - (x_qz * t0 + (x_x + x_qw * t1));
+    out[5] = x_qz * t1 - (x_qx * t2 + (x_y + x_qw * t0));
+    out[6] = x_qx * t0 - (x_qy * t1 + (x_z + x_qw * t2));
     return 0;
 }
 
@@ -71,10 +71,10 @@ int liegen_groups_se3_inverse(
     const double t1 = 2.0 * (x_qx * x_z - x_qz * x_x);
     const double t2 = 2.0 * (x_qy * x_x - x_qx * x_y);
     const double t3 = x_qy * (-2.0);
-    const double t4 = x_qy * t3;
+    const double t4 = -1.0 - x_qy * t3;
     const double t5 = x_qz * (-2.0);
     const double t6 = x_qz * t5;
-    const double t7 = -1.0 - (t4 + t6);
+    const double t7 = t4 - t6;
     const double t8 = x_qx * t3;
     const double t9 = x_qw * t5;
     const double t10 = t8 - t9;
@@ -84,20 +84,20 @@ int liegen_groups_se3_inverse(
     const double t14 = t8 + t9;
     const double t15 = x_qx * (-2.0);
     const double t16 = x_qx * t15;
-    const double t17 = -1.0 - (t6 + t16);
+    const double t17 = -1.0 - t6 - t16;
     const double t18 = x_qy * t5;
     const double t19 = x_qw * t15;
     const double t20 = t18 - t19;
     const double t21 = t11 - t12;
     const double t22 = t18 + t19;
-    const double t23 = -1.0 - (t4 + t16);
+    const double t23 = t4 - t16;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = x_qy * t2 - x_qz * t1 - (x_x + x_qw * t0);
-    out[5] = x_qz * t0 - x_qx * t2 - (x_y + x_qw * t1);
-    out[6] = x_qx * t1 - x_qy * t0 - (x_z + x_qw * t2);
+    out[4] = x_qy * t2 - (x_qz * t1 + (x_x + x_qw * t0));
+    out[5] = x_qz * t0 - (x_qx * t2 + (x_y + x_qw * t1));
+    out[6] = x_qx * t1 - (x_qy * t0 + (x_z + x_qw * t2));
     if (out_D_x != NULL) {
         out_D_x[0] = t7;
         out_D_x[1] = t10;

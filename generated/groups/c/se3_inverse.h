@@ -18,7 +18,7 @@
  *   out: 7, SE3 (qx, qy, qz, qw, x, y, z)
  *   out_D_x: 6 x 6, derivative of out by the tangent of x
  *
- * Operations: 33 (outputs only), 84 (with Jacobians)
+ * Operations: 33 (outputs only), 83 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

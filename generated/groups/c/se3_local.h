@@ -21,7 +21,7 @@
  *   out_D_x: 6 x 6, derivative of out by the tangent of x
  *   out_D_y: 6 x 6, derivative of out by the tangent of y
  *
- * Operations: 151 (outputs only), 236 (with Jacobians)
+ * Operations: 150 (outputs only), 235 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -18,7 +18,7 @@
  *   out: 6, R6 (v0, v1, v2, v3, v4, v5)
  *   out_D_x: 6 x 6, derivative of out by the tangent of x
  *
- * Operations: 90 (outputs only), 157 (with Jacobians)
+ * Operations: 90 (outputs only), 156 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

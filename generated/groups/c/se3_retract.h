@@ -22,7 +22,7 @@
  *   out_D_x: 6 x 6, derivative of out by the tangent of x
  *   out_D_d: 6 x 6, derivative of out by the tangent of d
  *
- * Operations: 141 (outputs only), 280 (with Jacobians)
+ * Operations: 140 (outputs only), 277 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -22,7 +22,7 @@
  *   out_D_x: 3 x 6, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 42 (outputs only), 45 (with Jacobians)
+ * Operations: 41 (outputs only), 44 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -48,27 +48,25 @@ int liegen_groups_se3_transform_to_value(
     const double p_x = p[0];
     const double p_y = p[1];
     const double p_z = p[2];
-    const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
-    const double t3 = x_qz * t2;
-    const double t4 = p_x - x_x;
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
-    const double t7 = p_y - x_y;
-    const double t8 = (1.0 - (t1 + t3)) * t4 + (t5 + t6) * t7;
-    const double t9 = x_qx * t2;
-    const double t10 = x_qw * t0;
-    const double t11 = p_z - x_z;
-    const double t12 = x_qx * 2.0;
-    const double t13 = x_qx * t12;
-    const double t14 = t4 * (t5 - t6) + t7 * (1.0 - (t3 + t13));
-    const double t15 = x_qy * t2;
-    const double t16 = x_qw * t12;
-    const double t17 = t4 * (t9 + t10) + t7 * (t15 - t16);
-    out[0] = t8 + (t9 - t10) * t11;
-    out[1] = t14 + t11 * (t15 + t16);
-    out[2] = t17 + t11 * (1.0 - (t1 + t13));
+    const double t0 = 2.0 * x_qz;
+    const double t1 = x_qz * t0;
+    const double t2 = x_qy * 2.0;
+    const double t3 = 1.0 - x_qy * t2;
+    const double t4 = x_x - p_x;
+    const double t5 = t2 * x_qx;
+    const double t6 = t0 * x_qw;
+    const double t7 = x_y - p_y;
+    const double t8 = t2 * x_qw;
+    const double t9 = t0 * x_qx;
+    const double t10 = x_z - p_z;
+    const double t11 = 2.0 * x_qx;
+    const double t12 = x_qx * t11;
+    const double t13 = t4 * (t6 - t5) + t7 * (t12 + (t1 - 1.0));
+    const double t14 = x_qy * t0;
+    const double t15 = x_qw * t11;
+    out[0] = (t8 - t9) * t10 + ((t1 - t3) * t4 - (t5 + t6) * t7);
+    out[1] = t13 - t10 * (t14 + t15);
+    out[2] = t10 * (t12 - t3) + (t7 * (t15 - t14) - t4 * (t9 + t8));
     return 0;
 }
 
@@ -91,66 +89,69 @@ int liegen_groups_se3_transform_to(
     const double p_x = p[0];
     const double p_y = p[1];
     const double p_z = p[2];
-    const double t0 = x_qz * 2.0;
-    const double t1 = x_qy * 2.0;
-    const double t2 = x_qw * t0;
-    const double t3 = x_qx * t1;
-    const double t4 = t3 + t2;
-    const double t5 = t3 - t2;
-    const double t6 = x_qx * 2.0;
-    const double t7 = x_qw * t6;
-    const double t8 = x_qy * t0;
-    const double t9 = t8 - t7;
-    const double t10 = t8 + t7;
-    const double t11 = x_qw * t1;
-    const double t12 = x_qx * t0;
-    const double t13 = t12 + t11;
-    const double t14 = t12 - t11;
-    const double t15 = x_qx * t6;
-    const double t16 = x_qz * t0;
-    const double t17 = x_qy * t1;
-    const double t18 = 1.0 - (t16 + t15);
-    const double t19 = p_y - x_y;
-    const double t20 = 1.0 - (t17 + t16);
-    const double t21 = p_x - x_x;
-    const double t22 = p_z - x_z;
-    const double t23 = 1.0 - (t17 + t15);
-    const double t24 = t21 * t5 + t19 * t18 + t22 * t10;
-    const double t25 = t20 * t21 + t4 * t19 + t14 * t22;
-    const double t26 = t21 * t13 + t19 * t9 + t22 * t23;
-    out[0] = t25;
+    const double t0 = x_qy * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
+    const double t3 = x_qz * t2;
+    const double t4 = t1 - t3;
+    const double t5 = x_x - p_x;
+    const double t6 = t0 * x_qx;
+    const double t7 = t2 * x_qw;
+    const double t8 = t6 + t7;
+    const double t9 = x_y - p_y;
+    const double t10 = t2 * x_qx;
+    const double t11 = t0 * x_qw;
+    const double t12 = t10 - t11;
+    const double t13 = x_z - p_z;
+    const double t14 = t12 * t13 + (t4 * t5 + t8 * t9);
+    const double t15 = -t14;
+    const double t16 = t6 - t7;
+    const double t17 = 2.0 * x_qx;
+    const double t18 = x_qx * t17;
+    const double t19 = 1.0 - t3 - t18;
+    const double t20 = x_qy * t2;
+    const double t21 = x_qw * t17;
+    const double t22 = t20 + t21;
+    const double t23 = t13 * t22 + (t5 * t16 + t9 * t19);
+    const double t24 = -t23;
+    const double t25 = t10 + t11;
+    const double t26 = t20 - t21;
+    const double t27 = t1 - t18;
+    const double t28 = t13 * t27 + (t5 * t25 + t9 * t26);
+    const double t29 = -t28;
+    out[0] = t15;
     out[1] = t24;
-    out[2] = t26;
+    out[2] = t29;
     if (out_D_x != NULL) {
         out_D_x[0] = 0.0;
-        out_D_x[1] = -t26;
+        out_D_x[1] = t28;
         out_D_x[2] = t24;
         out_D_x[3] = -1.0;
         out_D_x[4] = 0.0;
         out_D_x[5] = 0.0;
-        out_D_x[6] = t26;
+        out_D_x[6] = t29;
         out_D_x[7] = 0.0;
-        out_D_x[8] = -t25;
+        out_D_x[8] = t14;
         out_D_x[9] = 0.0;
         out_D_x[10] = -1.0;
         out_D_x[11] = 0.0;
-        out_D_x[12] = -t24;
-        out_D_x[13] = t25;
+        out_D_x[12] = t23;
+        out_D_x[13] = t15;
         out_D_x[14] = 0.0;
         out_D_x[15] = 0.0;
         out_D_x[16] = 0.0;
         out_D_x[17] = -1.0;
     }
     if (out_D_p != NULL) {
-        out_D_p[0] = t20;
-        out_D_p[1] = t4;
-        out_D_p[2] = t14;
-        out_D_p[3] = t5;
-        out_D_p[4] = t18;
-        out_D_p[5] = t10;
-        out_D_p[6] = t13;
-        out_D_p[7] = t9;
-        out_D_p[8] = t23;
+        out_D_p[0] = t4;
+        out_D_p[1] = t8;
+        out_D_p[2] = t12;
+        out_D_p[3] = t16;
+        out_D_p[4] = t19;
+        out_D_p[5] = t22;
+        out_D_p[6] = t25;
+        out_D_p[7] = t26;
+        out_D_p[8] = t27;
     }
     return 0;
 }

@@ -21,7 +21,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 39 (outputs only), 66 (with Jacobians)
+ * Operations: 38 (outputs only), 65 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -45,23 +45,21 @@ int liegen_groups_so3_act_value(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = x_qx * t0;
-    const double t5 = x_qw * t2;
-    const double t6 = p_x * (1.0 - (t1 + t3)) + p_y * (t4 - t5);
-    const double t7 = x_qx * t2;
-    const double t8 = x_qw * t0;
-    const double t9 = x_qx * 2.0;
-    const double t10 = x_qx * t9;
-    const double t11 = p_x * (t4 + t5) + p_y * (1.0 - (t3 + t10));
-    const double t12 = x_qy * t2;
-    const double t13 = x_qw * t9;
-    const double t14 = p_x * (t7 - t8) + p_y * (t12 + t13);
-    out[0] = t6 + p_z * (t7 + t8);
-    out[1] = t11 + p_z * (t12 - t13);
-    out[2] = t14 + p_z * (1.0 - (t1 + t10));
+    const double t4 = t0 * x_qx;
+    const double t5 = t2 * x_qw;
+    const double t6 = t2 * x_qx;
+    const double t7 = t0 * x_qw;
+    const double t8 = 2.0 * x_qx;
+    const double t9 = x_qx * t8;
+    const double t10 = p_x * (t4 + t5) + p_y * (1.0 - t3 - t9);
+    const double t11 = x_qy * t2;
+    const double t12 = x_qw * t8;
+    out[0] = p_z * (t6 + t7) + (p_x * (t1 - t3) + p_y * (t4 - t5));
+    out[1] = p_z * (t11 - t12) + t10;
+    out[2] = p_z * (t1 - t9) + (p_x * (t6 - t7) + p_y * (t11 + t12));
     return 0;
 }
 
@@ -82,33 +80,33 @@ int liegen_groups_so3_act(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = t0 * x_qx;
+    const double t6 = t2 * x_qw;
     const double t7 = t5 - t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 + t9;
     const double t11 = t5 + t6;
-    const double t12 = x_qx * 2.0;
+    const double t12 = 2.0 * x_qx;
     const double t13 = x_qx * t12;
-    const double t14 = 1.0 - (t3 + t13);
+    const double t14 = 1.0 - t3 - t13;
     const double t15 = x_qy * t2;
     const double t16 = x_qw * t12;
     const double t17 = t15 - t16;
     const double t18 = t8 - t9;
     const double t19 = t15 + t16;
-    const double t20 = 1.0 - (t1 + t13);
-    out[0] = p_x * t4 + p_y * t7 + p_z * t10;
-    out[1] = p_x * t11 + p_y * t14 + p_z * t17;
-    out[2] = p_x * t18 + p_y * t19 + p_z * t20;
+    const double t20 = t1 - t13;
+    out[0] = p_z * t10 + (p_x * t4 + p_y * t7);
+    out[1] = p_z * t17 + (p_x * t11 + p_y * t14);
+    out[2] = p_z * t20 + (p_x * t18 + p_y * t19);
     if (out_D_x != NULL) {
-        out_D_x[0] = p_y * t10 - p_z * t7;
-        out_D_x[1] = p_z * t4 - p_x * t10;
-        out_D_x[2] = p_x * t7 - p_y * t4;
+        out_D_x[0] = p_y * t10 - t7 * p_z;
+        out_D_x[1] = t4 * p_z - p_x * t10;
+        out_D_x[2] = p_x * t7 - t4 * p_y;
         out_D_x[3] = p_y * t17 - p_z * t14;
         out_D_x[4] = p_z * t11 - p_x * t17;
         out_D_x[5] = p_x * t14 - p_y * t11;

@@ -13,7 +13,7 @@
  *   x: 4, SO3 (qx, qy, qz, qw), given
  *   out: 3 x 3 matrix
  *
- * Operations: 24
+ * Operations: 23
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -32,26 +32,26 @@ int liegen_groups_so3_adjoint(
     const double x_qy = x[1];
     const double x_qz = x[2];
     const double x_qw = x[3];
-    const double t0 = x_qx * 2.0;
-    const double t1 = x_qz * 2.0;
+    const double t0 = 2.0 * x_qx;
+    const double t1 = 2.0 * x_qz;
     const double t2 = x_qw * t0;
     const double t3 = x_qy * t1;
     const double t4 = x_qy * 2.0;
-    const double t5 = x_qw * t4;
-    const double t6 = x_qx * t1;
-    const double t7 = x_qw * t1;
-    const double t8 = x_qx * t4;
-    const double t9 = x_qx * t0;
-    const double t10 = x_qz * t1;
-    const double t11 = x_qy * t4;
-    out[0] = 1.0 - (t11 + t10);
+    const double t5 = t4 * x_qw;
+    const double t6 = t1 * x_qx;
+    const double t7 = t1 * x_qw;
+    const double t8 = t4 * x_qx;
+    const double t9 = x_qz * t1;
+    const double t10 = x_qx * t0;
+    const double t11 = 1.0 - x_qy * t4;
+    out[0] = t11 - t9;
     out[1] = t8 - t7;
     out[2] = t6 + t5;
     out[3] = t8 + t7;
-    out[4] = 1.0 - (t10 + t9);
+    out[4] = 1.0 - t9 - t10;
     out[5] = t3 - t2;
     out[6] = t6 - t5;
     out[7] = t3 + t2;
-    out[8] = 1.0 - (t11 + t9);
+    out[8] = t11 - t10;
     return 0;
 }

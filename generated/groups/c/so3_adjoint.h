@@ -13,7 +13,7 @@
  *   x: 4, SO3 (qx, qy, qz, qw), given
  *   out: 3 x 3 matrix
  *
- * Operations: 24
+ * Operations: 23
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

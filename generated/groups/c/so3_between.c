@@ -20,7 +20,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_y: 3 x 3, derivative of out by the tangent of y
  *
- * Operations: 28 (outputs only), 52 (with Jacobians)
+ * Operations: 28 (outputs only), 51 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -68,11 +68,11 @@ int liegen_groups_so3_between(
     const double y_qy = y[1];
     const double y_qz = y[2];
     const double y_qw = y[3];
-    const double t0 = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy;
-    const double t1 = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw;
-    const double t2 = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz;
-    const double t3 = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx;
-    const double t4 = t0 * (-2.0);
+    const double t0 = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz);
+    const double t1 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
+    const double t2 = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx));
+    const double t3 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
+    const double t4 = t0 * 2.0;
     const double t5 = t1 * (-2.0);
     const double t6 = t2 * t4;
     const double t7 = t3 * t5;
@@ -81,23 +81,23 @@ int liegen_groups_so3_between(
     const double t10 = t2 * t8;
     const double t11 = t2 * t5;
     const double t12 = t0 * t8;
-    const double t13 = t0 * t4;
-    const double t14 = t1 * t5;
-    const double t15 = t3 * t8;
+    const double t13 = t1 * t5;
+    const double t14 = t0 * t4;
+    const double t15 = -1.0 - t3 * t8;
     out[0] = t0;
     out[1] = t3;
     out[2] = t1;
     out[3] = t2;
     if (out_D_x != NULL) {
-        out_D_x[0] = -1.0 - (t15 + t14);
+        out_D_x[0] = t15 - t13;
         out_D_x[1] = t12 + t11;
         out_D_x[2] = t9 - t10;
         out_D_x[3] = t12 - t11;
-        out_D_x[4] = -1.0 - (t14 + t13);
-        out_D_x[5] = t7 + t6;
+        out_D_x[4] = t14 + (-1.0 - t13);
+        out_D_x[5] = t7 - t6;
         out_D_x[6] = t10 + t9;
-        out_D_x[7] = t7 - t6;
-        out_D_x[8] = -1.0 - (t15 + t13);
+        out_D_x[7] = t7 + t6;
+        out_D_x[8] = t15 + t14;
     }
     if (out_D_y != NULL) {
         out_D_y[0] = 1.0;

@@ -20,7 +20,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_y: 3 x 3, derivative of out by the tangent of y
  *
- * Operations: 28 (outputs only), 52 (with Jacobians)
+ * Operations: 28 (outputs only), 51 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

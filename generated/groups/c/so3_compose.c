@@ -20,7 +20,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_y: 3 x 3, derivative of out by the tangent of y
  *
- * Operations: 28 (outputs only), 52 (with Jacobians)
+ * Operations: 28 (outputs only), 51 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -68,7 +68,7 @@ int liegen_groups_so3_compose(
     const double y_qy = y[1];
     const double y_qz = y[2];
     const double y_qw = y[3];
-    const double t0 = y_qx * (-2.0);
+    const double t0 = y_qx * 2.0;
     const double t1 = y_qz * 2.0;
     const double t2 = y_qw * t0;
     const double t3 = y_qy * t1;
@@ -79,21 +79,21 @@ int liegen_groups_so3_compose(
     const double t8 = y_qx * t4;
     const double t9 = y_qz * t1;
     const double t10 = y_qx * t0;
-    const double t11 = y_qy * t4;
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy;
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx;
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw;
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz;
+    const double t11 = 1.0 - y_qy * t4;
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
     if (out_D_x != NULL) {
-        out_D_x[0] = 1.0 - (t11 + t9);
+        out_D_x[0] = t11 - t9;
         out_D_x[1] = t8 + t7;
         out_D_x[2] = t5 - t6;
         out_D_x[3] = t8 - t7;
-        out_D_x[4] = 1.0 + (t10 - t9);
-        out_D_x[5] = t3 - t2;
+        out_D_x[4] = 1.0 - t9 - t10;
+        out_D_x[5] = t3 + t2;
         out_D_x[6] = t6 + t5;
-        out_D_x[7] = t3 + t2;
-        out_D_x[8] = 1.0 + (t10 - t11);
+        out_D_x[7] = t3 - t2;
+        out_D_x[8] = t11 - t10;
     }
     if (out_D_y != NULL) {
         out_D_y[0] = 1.0;

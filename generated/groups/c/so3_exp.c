@@ -18,7 +18,7 @@
  *   out: 4, SO3 (qx, qy, qz, qw)
  *   out_D_d: 3 x 3, derivative of out by the tangent of d
  *
- * Operations: 16 (outputs only), 61 (with Jacobians)
+ * Operations: 16 (outputs only), 60 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -56,7 +56,7 @@ int liegen_groups_so3_exp(
     const double d_x = d[0];
     const double d_y = d[1];
     const double d_z = d[2];
-    const double t0 = d_x * d_x + d_y * d_y + d_z * d_z;
+    const double t0 = d_z * d_z + (d_x * d_x + d_y * d_y);
     const double t1 = 0.25 * t0;
     const double t2 = t1 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t1;
     const double t3 = sqrt(t2);
@@ -71,7 +71,7 @@ int liegen_groups_so3_exp(
     const double t12 = 1.0 - t0 * t11;
     const double t13 = d_x * t11;
     const double t14 = d_y * t13;
-    const double t15 = 0.5 * (t4 * t4);
+    const double t15 = t4 * t5;
     const double t16 = d_z * t15;
     const double t17 = d_z * t13;
     const double t18 = d_y * t15;

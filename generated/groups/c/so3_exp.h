@@ -18,7 +18,7 @@
  *   out: 4, SO3 (qx, qy, qz, qw)
  *   out_D_d: 3 x 3, derivative of out by the tangent of d
  *
- * Operations: 16 (outputs only), 61 (with Jacobians)
+ * Operations: 16 (outputs only), 60 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -17,7 +17,7 @@
  *   out: 4, SO3 (qx, qy, qz, qw)
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *
- * Operations: 3 (outputs only), 27 (with Jacobians)
+ * Operations: 3 (outputs only), 26 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -65,21 +65,21 @@ int liegen_groups_so3_inverse(
     const double t8 = x_qx * t4;
     const double t9 = x_qz * t1;
     const double t10 = x_qx * t0;
-    const double t11 = x_qy * t4;
+    const double t11 = -1.0 - x_qy * t4;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
     if (out_D_x != NULL) {
-        out_D_x[0] = -1.0 - (t11 + t9);
+        out_D_x[0] = t11 - t9;
         out_D_x[1] = t8 - t7;
         out_D_x[2] = t6 + t5;
         out_D_x[3] = t8 + t7;
-        out_D_x[4] = t10 - t9 - 1.0;
+        out_D_x[4] = t10 + (-1.0 - t9);
         out_D_x[5] = t3 + t2;
         out_D_x[6] = t6 - t5;
         out_D_x[7] = t3 - t2;
-        out_D_x[8] = t10 - t11 - 1.0;
+        out_D_x[8] = t11 + t10;
     }
     return 0;
 }

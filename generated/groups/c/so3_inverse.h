@@ -17,7 +17,7 @@
  *   out: 4, SO3 (qx, qy, qz, qw)
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *
- * Operations: 3 (outputs only), 27 (with Jacobians)
+ * Operations: 3 (outputs only), 26 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -21,7 +21,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_d: 3 x 3, derivative of out by the tangent of d
  *
- * Operations: 44 (outputs only), 113 (with Jacobians)
+ * Operations: 44 (outputs only), 111 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -74,7 +74,7 @@ int liegen_groups_so3_retract(
     const double d_x = d[0];
     const double d_y = d[1];
     const double d_z = d[2];
-    const double t0 = d_x * d_x + d_y * d_y + d_z * d_z;
+    const double t0 = d_z * d_z + (d_x * d_x + d_y * d_y);
     const double t1 = 0.25 * t0;
     const double t2 = t1 < 8.673617379884035e-19 ? 8.673617379884035e-19 : t1;
     const double t3 = sqrt(t2);
@@ -85,21 +85,21 @@ int liegen_groups_so3_retract(
     const double t8 = t0 * (t0 * t7 - 2.755731920385087e-06) + 0.0001984126984118024;
     const double t9 = t0 * (t0 * t8 - 0.008333333333333161) + 0.16666666666666666;
     const double t10 = t0 < 3.0 ? t9 : (1.0 - t4 * t5) * (0.25 / t2);
-    const double t11 = 0.5 * (t4 * t4);
-    const double t12 = d_y * t10;
-    const double t13 = d_x * t11;
-    const double t14 = d_z * t12;
-    const double t15 = d_x * t10;
-    const double t16 = d_y * t11;
-    const double t17 = d_z * t15;
-    const double t18 = d_z * t11;
-    const double t19 = d_y * t15;
-    const double t20 = 1.0 - t0 * t10;
-    const double t21 = 0.5 * t4;
-    const double t22 = d_z * t21;
-    const double t23 = d_x * t21;
-    const double t24 = d_y * t21;
-    const double t25 = t23 * (-2.0);
+    const double t11 = 0.5 * t4;
+    const double t12 = t4 * t11;
+    const double t13 = d_y * t10;
+    const double t14 = d_x * t12;
+    const double t15 = d_z * t13;
+    const double t16 = d_x * t10;
+    const double t17 = d_y * t12;
+    const double t18 = d_z * t16;
+    const double t19 = d_z * t12;
+    const double t20 = d_y * t16;
+    const double t21 = 1.0 - t0 * t10;
+    const double t22 = d_z * t11;
+    const double t23 = d_x * t11;
+    const double t24 = d_y * t11;
+    const double t25 = t23 * 2.0;
     const double t26 = t22 * 2.0;
     const double t27 = t5 * t25;
     const double t28 = t24 * t26;
@@ -110,32 +110,32 @@ int liegen_groups_so3_retract(
     const double t33 = t23 * t29;
     const double t34 = t22 * t26;
     const double t35 = t23 * t25;
-    const double t36 = t24 * t29;
-    out[0] = x_qw * t23 + x_qx * t5 + x_qy * t22 - x_qz * t24;
-    out[1] = x_qw * t24 - x_qx * t22 + x_qy * t5 + x_qz * t23;
-    out[2] = x_qw * t22 + x_qx * t24 - x_qy * t23 + x_qz * t5;
-    out[3] = x_qw * t5 - x_qx * t23 - x_qy * t24 - x_qz * t22;
+    const double t36 = 1.0 - t24 * t29;
+    out[0] = x_qy * t22 + (x_qw * t23 + x_qx * t5) - x_qz * t24;
+    out[1] = t23 * x_qz + (t5 * x_qy + (x_qw * t24 - x_qx * t22));
+    out[2] = t5 * x_qz + (x_qw * t22 + x_qx * t24 - t23 * x_qy);
+    out[3] = x_qw * t5 - t23 * x_qx - x_qy * t24 - t22 * x_qz;
     if (out_D_x != NULL) {
-        out_D_x[0] = 1.0 - (t36 + t34);
+        out_D_x[0] = t36 - t34;
         out_D_x[1] = t33 + t32;
         out_D_x[2] = t30 - t31;
         out_D_x[3] = t33 - t32;
-        out_D_x[4] = 1.0 + (t35 - t34);
-        out_D_x[5] = t28 - t27;
+        out_D_x[4] = 1.0 - t34 - t35;
+        out_D_x[5] = t28 + t27;
         out_D_x[6] = t31 + t30;
-        out_D_x[7] = t28 + t27;
-        out_D_x[8] = 1.0 + (t35 - t36);
+        out_D_x[7] = t28 - t27;
+        out_D_x[8] = t36 - t35;
     }
     if (out_D_d != NULL) {
-        out_D_d[0] = t20 + d_x * t15;
-        out_D_d[1] = t19 + t18;
-        out_D_d[2] = t17 - t16;
-        out_D_d[3] = t19 - t18;
-        out_D_d[4] = t20 + d_y * t12;
-        out_D_d[5] = t14 + t13;
-        out_D_d[6] = t17 + t16;
-        out_D_d[7] = t14 - t13;
-        out_D_d[8] = t20 + d_z * (d_z * t10);
+        out_D_d[0] = t21 + d_x * t16;
+        out_D_d[1] = t20 + t19;
+        out_D_d[2] = t18 - t17;
+        out_D_d[3] = t20 - t19;
+        out_D_d[4] = t21 + d_y * t13;
+        out_D_d[5] = t15 + t14;
+        out_D_d[6] = t18 + t17;
+        out_D_d[7] = t15 - t14;
+        out_D_d[8] = t21 + d_z * (d_z * t10);
     }
     return 0;
 }

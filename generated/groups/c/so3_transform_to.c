@@ -21,7 +21,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 39 (outputs only), 42 (with Jacobians)
+ * Operations: 38 (outputs only), 41 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -45,23 +45,21 @@ int liegen_groups_so3_transform_to_value(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = x_qx * t0;
-    const double t5 = x_qw * t2;
-    const double t6 = p_x * (1.0 - (t1 + t3)) + p_y * (t4 + t5);
-    const double t7 = x_qx * t2;
-    const double t8 = x_qw * t0;
-    const double t9 = x_qx * 2.0;
-    const double t10 = x_qx * t9;
-    const double t11 = p_x * (t4 - t5) + p_y * (1.0 - (t3 + t10));
-    const double t12 = x_qy * t2;
-    const double t13 = x_qw * t9;
-    const double t14 = p_x * (t7 + t8) + p_y * (t12 - t13);
-    out[0] = t6 + p_z * (t7 - t8);
-    out[1] = t11 + p_z * (t12 + t13);
-    out[2] = t14 + p_z * (1.0 - (t1 + t10));
+    const double t4 = t0 * x_qx;
+    const double t5 = t2 * x_qw;
+    const double t6 = t2 * x_qx;
+    const double t7 = t0 * x_qw;
+    const double t8 = 2.0 * x_qx;
+    const double t9 = x_qx * t8;
+    const double t10 = p_x * (t4 - t5) + p_y * (1.0 - t3 - t9);
+    const double t11 = x_qy * t2;
+    const double t12 = x_qw * t8;
+    out[0] = p_z * (t6 - t7) + (p_x * (t1 - t3) + p_y * (t4 + t5));
+    out[1] = p_z * (t11 + t12) + t10;
+    out[2] = p_z * (t1 - t9) + (p_x * (t6 + t7) + p_y * (t11 - t12));
     return 0;
 }
 
@@ -82,29 +80,29 @@ int liegen_groups_so3_transform_to(
     const double p_y = p[1];
     const double p_z = p[2];
     const double t0 = x_qy * 2.0;
-    const double t1 = x_qy * t0;
-    const double t2 = x_qz * 2.0;
+    const double t1 = 1.0 - x_qy * t0;
+    const double t2 = 2.0 * x_qz;
     const double t3 = x_qz * t2;
-    const double t4 = 1.0 - (t1 + t3);
-    const double t5 = x_qx * t0;
-    const double t6 = x_qw * t2;
+    const double t4 = t1 - t3;
+    const double t5 = t0 * x_qx;
+    const double t6 = t2 * x_qw;
     const double t7 = t5 + t6;
-    const double t8 = x_qx * t2;
-    const double t9 = x_qw * t0;
+    const double t8 = t2 * x_qx;
+    const double t9 = t0 * x_qw;
     const double t10 = t8 - t9;
-    const double t11 = p_x * t4 + p_y * t7 + p_z * t10;
+    const double t11 = p_z * t10 + (p_x * t4 + p_y * t7);
     const double t12 = t5 - t6;
-    const double t13 = x_qx * 2.0;
+    const double t13 = 2.0 * x_qx;
     const double t14 = x_qx * t13;
-    const double t15 = 1.0 - (t3 + t14);
+    const double t15 = 1.0 - t3 - t14;
     const double t16 = x_qy * t2;
     const double t17 = x_qw * t13;
     const double t18 = t16 + t17;
-    const double t19 = p_x * t12 + p_y * t15 + p_z * t18;
+    const double t19 = p_z * t18 + (p_x * t12 + p_y * t15);
     const double t20 = t8 + t9;
     const double t21 = t16 - t17;
-    const double t22 = 1.0 - (t1 + t14);
-    const double t23 = p_x * t20 + p_y * t21 + p_z * t22;
+    const double t22 = t1 - t14;
+    const double t23 = p_z * t22 + (p_x * t20 + p_y * t21);
     out[0] = t11;
     out[1] = t19;
     out[2] = t23;

@@ -21,7 +21,7 @@
  *   out_D_x: 3 x 3, derivative of out by the tangent of x
  *   out_D_p: 3 x 3, derivative of out by the tangent of p
  *
- * Operations: 39 (outputs only), 42 (with Jacobians)
+ * Operations: 38 (outputs only), 41 (with Jacobians)
  * Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
  *
  * SPDX-License-Identifier: 0BSD

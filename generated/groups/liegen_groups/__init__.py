@@ -138,62 +138,62 @@
 #   se2_Jl: 39
 #   se2_Jr_inv: 38
 #   se2_Jl_inv: 38
-#   so3_compose: 28, with Jacobians 52
-#   so3_inverse: 3, with Jacobians 27
-#   so3_between: 28, with Jacobians 52
-#   so3_act: 39, with Jacobians 66
-#   so3_transform_to: 39, with Jacobians 42
-#   so3_exp: 16, with Jacobians 61
+#   so3_compose: 28, with Jacobians 51
+#   so3_inverse: 3, with Jacobians 26
+#   so3_between: 28, with Jacobians 51
+#   so3_act: 38, with Jacobians 65
+#   so3_transform_to: 38, with Jacobians 41
+#   so3_exp: 16, with Jacobians 60
 #   so3_log: 33, with Jacobians 75
-#   so3_retract: 44, with Jacobians 113
+#   so3_retract: 44, with Jacobians 111
 #   so3_local: 61, with Jacobians 112
-#   so3_adjoint: 24
+#   so3_adjoint: 23
 #   so3_ad: 3
 #   so3_Jr: 57
 #   so3_Jl: 57
 #   so3_Jr_inv: 54
 #   so3_Jl_inv: 54
-#   se3_compose: 61, with Jacobians 112
-#   se3_inverse: 33, with Jacobians 84
+#   se3_compose: 61, with Jacobians 111
+#   se3_inverse: 33, with Jacobians 83
 #   se3_between: 61, with Jacobians 112
-#   se3_act: 42, with Jacobians 69
-#   se3_transform_to: 42, with Jacobians 45
-#   se3_exp: 80, with Jacobians 168
-#   se3_log: 90, with Jacobians 157
-#   se3_retract: 141, with Jacobians 280
-#   se3_local: 151, with Jacobians 236
-#   se3_adjoint: 51
+#   se3_act: 41, with Jacobians 68
+#   se3_transform_to: 41, with Jacobians 44
+#   se3_exp: 79, with Jacobians 166
+#   se3_log: 90, with Jacobians 156
+#   se3_retract: 140, with Jacobians 277
+#   se3_local: 150, with Jacobians 235
+#   se3_adjoint: 50
 #   se3_ad: 6
-#   se3_Jr: 149
-#   se3_Jl: 149
-#   se3_Jr_inv: 126
-#   se3_Jl_inv: 126
-#   se23_compose: 88, with Jacobians 166
-#   se23_inverse: 57, with Jacobians 111
-#   se23_between: 88, with Jacobians 166
-#   se23_exp: 95, with Jacobians 242
-#   se23_log: 105, with Jacobians 224
-#   se23_retract: 183, with Jacobians 408
-#   se23_local: 193, with Jacobians 339
-#   se23_adjoint: 78
+#   se3_Jr: 148
+#   se3_Jl: 148
+#   se3_Jr_inv: 125
+#   se3_Jl_inv: 125
+#   se23_compose: 87, with Jacobians 164
+#   se23_inverse: 56, with Jacobians 110
+#   se23_between: 87, with Jacobians 166
+#   se23_exp: 94, with Jacobians 236
+#   se23_log: 105, with Jacobians 218
+#   se23_retract: 181, with Jacobians 400
+#   se23_local: 191, with Jacobians 332
+#   se23_adjoint: 77
 #   se23_ad: 9
-#   se23_Jr: 208
-#   se23_Jl: 208
-#   se23_Jr_inv: 178
-#   se23_Jl_inv: 178
-#   gal3_compose: 95, with Jacobians 198
-#   gal3_inverse: 64, with Jacobians 131
-#   gal3_between: 95, with Jacobians 198
-#   gal3_exp: 153, with Jacobians 417
-#   gal3_log: 129, with Jacobians 309
-#   gal3_retract: 248, with Jacobians 615
-#   gal3_local: 224, with Jacobians 432
-#   gal3_adjoint: 94
+#   se23_Jr: 203
+#   se23_Jl: 203
+#   se23_Jr_inv: 173
+#   se23_Jl_inv: 173
+#   gal3_compose: 94, with Jacobians 196
+#   gal3_inverse: 63, with Jacobians 131
+#   gal3_between: 94, with Jacobians 198
+#   gal3_exp: 152, with Jacobians 407
+#   gal3_log: 129, with Jacobians 300
+#   gal3_retract: 246, with Jacobians 603
+#   gal3_local: 222, with Jacobians 421
+#   gal3_adjoint: 93
 #   gal3_ad: 10
-#   gal3_Jr: 371
-#   gal3_Jl: 371
-#   gal3_Jr_inv: 254
-#   gal3_Jl_inv: 254
+#   gal3_Jr: 365
+#   gal3_Jl: 365
+#   gal3_Jr_inv: 245
+#   gal3_Jl_inv: 245
 #
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #

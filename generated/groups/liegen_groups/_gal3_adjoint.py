@@ -13,7 +13,7 @@
 #   x: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t), given
 #   out: 10 x 10 matrix
 #
-# Operations: 94
+# Operations: 93
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -46,30 +46,30 @@ def gal3_adjoint(x: npt.ArrayLike) -> Array:
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_vx, x_vy, x_vz, x_t = x
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
-    t2 = x_qz * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = 2.0 * x_qz
     t3 = x_qz * t2
-    t4 = 1.0 - (t1 + t3)
-    t5 = x_qx * t0
-    t6 = x_qw * t2
+    t4 = t1 - t3
+    t5 = t0 * x_qx
+    t6 = t2 * x_qw
     t7 = t5 - t6
-    t8 = x_qx * t2
-    t9 = x_qw * t0
+    t8 = t2 * x_qx
+    t9 = t0 * x_qw
     t10 = t8 + t9
     t11 = t5 + t6
-    t12 = x_qx * 2.0
+    t12 = 2.0 * x_qx
     t13 = x_qx * t12
-    t14 = 1.0 - (t3 + t13)
+    t14 = 1.0 - t3 - t13
     t15 = x_qy * t2
     t16 = x_qw * t12
     t17 = t15 - t16
     t18 = t8 - t9
     t19 = t15 + t16
-    t20 = 1.0 - (t1 + t13)
+    t20 = t1 - t13
     t21 = -x_t
     t22 = x_y + x_vy * t21
-    t23 = x_z + x_vz * t21
-    t24 = x_x + x_vx * t21
+    t23 = x_z + t21 * x_vz
+    t24 = x_x + t21 * x_vx
     out[0, 0] = t4
     out[0, 1] = t7
     out[0, 2] = t10
@@ -109,21 +109,21 @@ def _value(x: Array, out: Array) -> None:
     out[5, 7] = t19 * t21
     out[5, 8] = t20 * t21
     out[5, 9] = x_vz
-    out[6, 0] = x_vy * t18 - x_vz * t11
-    out[6, 1] = x_vy * t19 - x_vz * t14
-    out[6, 2] = x_vy * t20 - x_vz * t17
+    out[6, 0] = t18 * x_vy - t11 * x_vz
+    out[6, 1] = t19 * x_vy - t14 * x_vz
+    out[6, 2] = t20 * x_vy - t17 * x_vz
     out[6, 6] = t4
     out[6, 7] = t7
     out[6, 8] = t10
-    out[7, 0] = x_vz * t4 - x_vx * t18
-    out[7, 1] = x_vz * t7 - x_vx * t19
-    out[7, 2] = x_vz * t10 - x_vx * t20
+    out[7, 0] = t4 * x_vz - t18 * x_vx
+    out[7, 1] = t7 * x_vz - t19 * x_vx
+    out[7, 2] = t10 * x_vz - t20 * x_vx
     out[7, 6] = t11
     out[7, 7] = t14
     out[7, 8] = t17
-    out[8, 0] = x_vx * t11 - x_vy * t4
-    out[8, 1] = x_vx * t14 - x_vy * t7
-    out[8, 2] = x_vx * t17 - x_vy * t10
+    out[8, 0] = t11 * x_vx - t4 * x_vy
+    out[8, 1] = t14 * x_vx - t7 * x_vy
+    out[8, 2] = t17 * x_vx - t10 * x_vy
     out[8, 6] = t18
     out[8, 7] = t19
     out[8, 8] = t20

@@ -20,7 +20,7 @@
 #   out_D_x: 10 x 10, derivative of out by the tangent of x
 #   out_D_y: 10 x 10, derivative of out by the tangent of y
 #
-# Operations: 95 (outputs only), 198 (with Jacobians)
+# Operations: 94 (outputs only), 198 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -87,44 +87,44 @@ def gal3_between_jacobians(x: npt.ArrayLike, y: npt.ArrayLike) -> Gal3BetweenJac
 def _value(x: Array, y: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_vx, x_vy, x_vz, x_t = x
     y_qx, y_qy, y_qz, y_qw, y_x, y_y, y_z, y_vx, y_vy, y_vz, y_t = y
-    t0 = x_qy * (-2.0)
-    t1 = x_qy * t0
-    t2 = x_qz * (-2.0)
+    t0 = x_qy * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = x_qz * 2.0
     t3 = x_qz * t2
-    t4 = 1.0 + (t1 + t3)
+    t4 = t1 - t3
     t5 = y_t - x_t
-    t6 = y_x - x_x - x_vx * t5
+    t6 = x_x - y_x + x_vx * t5
     t7 = x_qx * t0
     t8 = x_qw * t2
     t9 = t7 + t8
-    t10 = y_y - x_y - x_vy * t5
+    t10 = x_y - y_y + t5 * x_vy
     t11 = x_qw * t0
     t12 = x_qx * t2
     t13 = t11 - t12
-    t14 = y_z - x_z - x_vz * t5
-    t15 = t8 - t7
-    t16 = x_qx * (-2.0)
-    t17 = x_qx * t16
-    t18 = 1.0 + (t3 + t17)
+    t14 = x_z - y_z + t5 * x_vz
+    t15 = x_qx * 2.0
+    t16 = x_qx * t15
+    t17 = t16 + (t3 - 1.0)
+    t18 = t7 - t8
     t19 = x_qy * t2
-    t20 = x_qw * t16
+    t20 = x_qw * t15
     t21 = t19 + t20
-    t22 = t20 - t19
+    t22 = t19 - t20
     t23 = t11 + t12
-    t24 = 1.0 + (t1 + t17)
-    t25 = y_vx - x_vx
-    t26 = y_vy - x_vy
+    t24 = t16 - t1
+    t25 = y_vy - x_vy
+    t26 = x_vx - y_vx
     t27 = y_vz - x_vz
-    out[0] = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy
-    out[1] = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx
-    out[2] = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw
-    out[3] = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz
-    out[4] = t4 * t6 - t9 * t10 + t13 * t14
-    out[5] = t6 * t15 + t10 * t18 - t14 * t21
-    out[6] = t10 * t22 - t6 * t23 + t14 * t24
-    out[7] = t4 * t25 - t9 * t26 + t13 * t27
-    out[8] = t15 * t25 + t18 * t26 - t21 * t27
-    out[9] = t22 * t26 - t23 * t25 + t24 * t27
+    out[0] = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz)
+    out[1] = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz
+    out[2] = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz
+    out[3] = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx))
+    out[4] = t13 * t14 - (t4 * t6 + t9 * t10)
+    out[5] = t10 * t17 - t6 * t18 - t14 * t21
+    out[6] = t14 * t24 - (t10 * t22 + t6 * t23)
+    out[7] = t9 * t25 - t4 * t26 - t13 * t27
+    out[8] = t21 * t27 - (t18 * t26 + t17 * t25)
+    out[9] = t22 * t25 - t23 * t26 - t24 * t27
     out[10] = t5
 
 

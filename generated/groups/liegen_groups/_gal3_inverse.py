@@ -17,7 +17,7 @@
 #   out: 11, Gal3 (qx, qy, qz, qw, x, y, z, vx, vy, vz, t)
 #   out_D_x: 10 x 10, derivative of out by the tangent of x
 #
-# Operations: 64 (outputs only), 131 (with Jacobians)
+# Operations: 63 (outputs only), 131 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -77,40 +77,40 @@ def gal3_inverse_jacobians(x: npt.ArrayLike) -> Gal3InverseJacobians:
 
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_vx, x_vy, x_vz, x_t = x
-    t0 = x_qz * (-2.0)
-    t1 = x_qx * (-2.0)
-    t2 = x_qy * (-2.0)
-    t3 = x_qy * t0
+    t0 = x_qz * 2.0
+    t1 = x_qy * 2.0
+    t2 = x_qx * 2.0
+    t3 = x_qx * t0
     t4 = x_qw * t1
-    t5 = x_qx * t0
-    t6 = x_qw * t2
-    t7 = t4 - t3
-    t8 = t6 + t5
-    t9 = x_qx * t1
-    t10 = x_qy * t2
-    t11 = 1.0 + (t10 + t9)
-    t12 = t3 + t4
-    t13 = x_qz * t0
-    t14 = x_qx * t2
+    t5 = x_qw * t2
+    t6 = x_qy * t0
+    t7 = t4 + t3
+    t8 = t6 - t5
+    t9 = 1.0 - x_qy * t1
+    t10 = x_qx * t2
+    t11 = t10 - t9
+    t12 = x_qz * t0
+    t13 = t10 + (t12 - 1.0)
+    t14 = t6 + t5
     t15 = x_qw * t0
-    t16 = 1.0 + (t13 + t9)
-    t17 = t15 - t14
-    t18 = t14 + t15
-    t19 = t6 - t5
-    t20 = 1.0 + (t10 + t13)
-    t21 = x_vx * x_t - x_x
-    t22 = x_vy * x_t - x_y
-    t23 = x_vz * x_t - x_z
+    t16 = x_qx * t1
+    t17 = t16 - t15
+    t18 = t16 + t15
+    t19 = t9 - t12
+    t20 = t4 - t3
+    t21 = x_x - x_vx * x_t
+    t22 = x_y - x_t * x_vy
+    t23 = x_z - x_t * x_vz
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = t20 * t21 - t18 * t22 + t19 * t23
-    out[5] = t21 * t17 + t22 * t16 - t23 * t12
-    out[6] = t22 * t7 - t21 * t8 + t23 * t11
-    out[7] = x_vy * t18 - x_vx * t20 - x_vz * t19
-    out[8] = x_vz * t12 - (x_vx * t17 + x_vy * t16)
-    out[9] = x_vx * t8 - x_vy * t7 - x_vz * t11
+    out[4] = t20 * t23 - (t19 * t21 + t18 * t22)
+    out[5] = t22 * t13 - t21 * t17 - t23 * t14
+    out[6] = t23 * t11 - (t22 * t8 + t21 * t7)
+    out[7] = t20 * x_vz - (t19 * x_vx + t18 * x_vy)
+    out[8] = x_vy * t13 - x_vx * t17 - x_vz * t14
+    out[9] = x_vz * t11 - (x_vy * t8 + x_vx * t7)
     out[10] = -x_t
 
 

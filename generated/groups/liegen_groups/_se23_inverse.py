@@ -17,7 +17,7 @@
 #   out: 10, SE23 (qx, qy, qz, qw, x, y, z, vx, vy, vz)
 #   out_D_x: 9 x 9, derivative of out by the tangent of x
 #
-# Operations: 57 (outputs only), 111 (with Jacobians)
+# Operations: 56 (outputs only), 110 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -77,72 +77,72 @@ def se23_inverse_jacobians(x: npt.ArrayLike) -> Se23InverseJacobians:
 
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_vx, x_vy, x_vz = x
-    t0 = x_qy * (-2.0)
-    t1 = x_qy * t0
-    t2 = x_qz * (-2.0)
+    t0 = x_qy * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = x_qz * 2.0
     t3 = x_qz * t2
-    t4 = 1.0 + (t1 + t3)
+    t4 = t1 - t3
     t5 = x_qx * t0
     t6 = x_qw * t2
     t7 = t5 + t6
     t8 = x_qw * t0
     t9 = x_qx * t2
     t10 = t8 - t9
-    t11 = t6 - t5
-    t12 = x_qx * (-2.0)
-    t13 = x_qx * t12
-    t14 = 1.0 + (t3 + t13)
+    t11 = x_qx * 2.0
+    t12 = x_qx * t11
+    t13 = t12 + (t3 - 1.0)
+    t14 = t5 - t6
     t15 = x_qy * t2
-    t16 = x_qw * t12
+    t16 = x_qw * t11
     t17 = t15 + t16
-    t18 = t16 - t15
+    t18 = t15 - t16
     t19 = t8 + t9
-    t20 = 1.0 + (t1 + t13)
+    t20 = t12 - t1
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = x_y * t7 - x_x * t4 - x_z * t10
-    out[5] = x_z * t17 - (x_x * t11 + x_y * t14)
-    out[6] = x_x * t19 - x_y * t18 - x_z * t20
-    out[7] = x_vy * t7 - x_vx * t4 - x_vz * t10
-    out[8] = x_vz * t17 - (x_vx * t11 + x_vy * t14)
-    out[9] = x_vx * t19 - x_vy * t18 - x_vz * t20
+    out[4] = x_z * t10 - (x_x * t4 + x_y * t7)
+    out[5] = x_y * t13 - x_x * t14 - x_z * t17
+    out[6] = x_z * t20 - (x_y * t18 + x_x * t19)
+    out[7] = t10 * x_vz - (t4 * x_vx + t7 * x_vy)
+    out[8] = t13 * x_vy - t14 * x_vx - t17 * x_vz
+    out[9] = t20 * x_vz - (t18 * x_vy + t19 * x_vx)
 
 
 def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z, x_vx, x_vy, x_vz = x
     t0 = x_qy * (-2.0)
-    t1 = x_qy * t0
+    t1 = -1.0 - x_qy * t0
     t2 = x_qz * (-2.0)
     t3 = x_qz * t2
-    t4 = -1.0 - (t1 + t3)
+    t4 = t1 - t3
     t5 = x_qx * t0
     t6 = x_qw * t2
     t7 = t5 + t6
-    t8 = x_qw * t0
-    t9 = x_qx * t2
-    t10 = t9 - t8
+    t8 = x_qx * t2
+    t9 = x_qw * t0
+    t10 = t8 - t9
     t11 = t5 - t6
     t12 = x_qx * (-2.0)
     t13 = x_qx * t12
-    t14 = -1.0 - (t3 + t13)
+    t14 = -1.0 - t3 - t13
     t15 = x_qy * t2
     t16 = x_qw * t12
     t17 = t15 + t16
     t18 = t15 - t16
-    t19 = t8 + t9
-    t20 = -1.0 - (t1 + t13)
+    t19 = t9 + t8
+    t20 = t1 - t13
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = x_x * t4 + x_y * t7 + x_z * t10
-    out[5] = x_x * t11 + x_y * t14 + x_z * t17
-    out[6] = x_y * t18 + x_x * t19 + x_z * t20
-    out[7] = x_vx * t4 + x_vy * t7 + x_vz * t10
-    out[8] = x_vx * t11 + x_vy * t14 + x_vz * t17
-    out[9] = x_vy * t18 + x_vx * t19 + x_vz * t20
+    out[4] = x_z * t10 + (x_x * t4 + x_y * t7)
+    out[5] = x_z * t17 + (x_x * t11 + x_y * t14)
+    out[6] = x_z * t20 + (x_y * t18 + x_x * t19)
+    out[7] = t10 * x_vz + (t4 * x_vx + t7 * x_vy)
+    out[8] = t17 * x_vz + (t11 * x_vx + t14 * x_vy)
+    out[9] = t20 * x_vz + (t18 * x_vy + t19 * x_vx)
     out_D_x[0, 0] = t4
     out_D_x[0, 1] = t11
     out_D_x[0, 2] = t19
@@ -152,39 +152,39 @@ def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
     out_D_x[2, 0] = t10
     out_D_x[2, 1] = t17
     out_D_x[2, 2] = t20
-    out_D_x[3, 0] = x_y * t10 - x_z * t7
+    out_D_x[3, 0] = x_y * t10 - t7 * x_z
     out_D_x[3, 1] = x_y * t17 - x_z * t14
     out_D_x[3, 2] = x_y * t20 - x_z * t18
     out_D_x[3, 3] = t4
     out_D_x[3, 4] = t11
     out_D_x[3, 5] = t19
-    out_D_x[4, 0] = x_z * t4 - x_x * t10
+    out_D_x[4, 0] = t4 * x_z - x_x * t10
     out_D_x[4, 1] = x_z * t11 - x_x * t17
     out_D_x[4, 2] = x_z * t19 - x_x * t20
     out_D_x[4, 3] = t7
     out_D_x[4, 4] = t14
     out_D_x[4, 5] = t18
-    out_D_x[5, 0] = x_x * t7 - x_y * t4
+    out_D_x[5, 0] = x_x * t7 - t4 * x_y
     out_D_x[5, 1] = x_x * t14 - x_y * t11
     out_D_x[5, 2] = x_x * t18 - x_y * t19
     out_D_x[5, 3] = t10
     out_D_x[5, 4] = t17
     out_D_x[5, 5] = t20
-    out_D_x[6, 0] = x_vy * t10 - x_vz * t7
-    out_D_x[6, 1] = x_vy * t17 - x_vz * t14
-    out_D_x[6, 2] = x_vy * t20 - x_vz * t18
+    out_D_x[6, 0] = t10 * x_vy - t7 * x_vz
+    out_D_x[6, 1] = t17 * x_vy - t14 * x_vz
+    out_D_x[6, 2] = t20 * x_vy - t18 * x_vz
     out_D_x[6, 6] = t4
     out_D_x[6, 7] = t11
     out_D_x[6, 8] = t19
-    out_D_x[7, 0] = x_vz * t4 - x_vx * t10
-    out_D_x[7, 1] = x_vz * t11 - x_vx * t17
-    out_D_x[7, 2] = x_vz * t19 - x_vx * t20
+    out_D_x[7, 0] = t4 * x_vz - t10 * x_vx
+    out_D_x[7, 1] = t11 * x_vz - t17 * x_vx
+    out_D_x[7, 2] = t19 * x_vz - t20 * x_vx
     out_D_x[7, 6] = t7
     out_D_x[7, 7] = t14
     out_D_x[7, 8] = t18
-    out_D_x[8, 0] = x_vx * t7 - x_vy * t4
-    out_D_x[8, 1] = x_vx * t14 - x_vy * t11
-    out_D_x[8, 2] = x_vx * t18 - x_vy * t19
+    out_D_x[8, 0] = t7 * x_vx - t4 * x_vy
+    out_D_x[8, 1] = t14 * x_vx - t11 * x_vy
+    out_D_x[8, 2] = t18 * x_vx - t19 * x_vy
     out_D_x[8, 6] = t10
     out_D_x[8, 7] = t17
     out_D_x[8, 8] = t20

@@ -87,8 +87,8 @@ def se2_act_jacobians(x: npt.ArrayLike, p: npt.ArrayLike) -> Se2ActJacobians:
 def _value(x: Array, p: Array, out: Array) -> None:
     x_c, x_s, x_x, x_y = x
     p_x, p_y = p
-    out[0] = x_x + (x_c * p_x - x_s * p_y)
-    out[1] = x_y + (x_s * p_x + x_c * p_y)
+    out[0] = x_x + x_c * p_x - x_s * p_y
+    out[1] = x_c * p_y + (x_y + p_x * x_s)
 
 
 def _jacobians(x: Array, p: Array, out: Array, out_D_x: Array, out_D_p: Array) -> None:

@@ -87,18 +87,18 @@ def _value(x: Array, y: Array, out: Array) -> None:
     x_c, x_s, x_x, x_y = x
     y_c, y_s, y_x, y_y = y
     out[0] = x_c * y_c - x_s * y_s
-    out[1] = x_s * y_c + x_c * y_s
-    out[2] = x_x + (x_c * y_x - x_s * y_y)
-    out[3] = x_y + (x_s * y_x + x_c * y_y)
+    out[1] = y_c * x_s + x_c * y_s
+    out[2] = x_x + x_c * y_x - x_s * y_y
+    out[3] = x_c * y_y + (x_y + x_s * y_x)
 
 
 def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -> None:
     x_c, x_s, x_x, x_y = x
     y_c, y_s, y_x, y_y = y
     out[0] = x_c * y_c - x_s * y_s
-    out[1] = x_s * y_c + x_c * y_s
-    out[2] = x_x + (x_c * y_x - x_s * y_y)
-    out[3] = x_y + (x_s * y_x + x_c * y_y)
+    out[1] = y_c * x_s + x_c * y_s
+    out[2] = x_x + x_c * y_x - x_s * y_y
+    out[3] = x_c * y_y + (x_y + x_s * y_x)
     out_D_x[0, 0] = y_c
     out_D_x[0, 1] = y_s
     out_D_x[0, 2] = y_s * y_x - y_c * y_y

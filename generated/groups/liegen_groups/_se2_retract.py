@@ -90,18 +90,18 @@ def _value(x: Array, d: Array, out: Array) -> None:
     d_x, d_y, d_z = d
     t0 = np.cos(d_z)
     t1 = np.sin(d_z)
-    t2 = 0.25 * (d_z * d_z)
+    t2 = d_z * (d_z * 0.25)
     t3 = np.where(t2 < 8.673617379884035e-19, 8.673617379884035e-19, t2)
     t4 = np.sqrt(t3)
     t5 = np.sin(t4) / t4
     t6 = t5 * np.cos(t4)
-    t7 = 0.5 * (d_z * (t5 * t5))
+    t7 = t5 * (t5 * (d_z * 0.5))
     t8 = d_x * t6 - d_y * t7
-    t9 = d_x * t7 + d_y * t6
+    t9 = d_x * t7 + t6 * d_y
     out[0] = x_c * t0 - x_s * t1
-    out[1] = x_s * t0 + x_c * t1
-    out[2] = x_x + (x_c * t8 - x_s * t9)
-    out[3] = x_y + (x_s * t8 + x_c * t9)
+    out[1] = t0 * x_s + x_c * t1
+    out[2] = x_x + x_c * t8 - x_s * t9
+    out[3] = x_c * t9 + (x_y + x_s * t8)
 
 
 def _jacobians(x: Array, d: Array, out: Array, out_D_x: Array, out_D_d: Array) -> None:
@@ -117,17 +117,17 @@ def _jacobians(x: Array, d: Array, out: Array, out_D_x: Array, out_D_d: Array) -
     t7 = t0 * (t6 - 1.605889346154661e-10) + 2.5052106052920182e-08
     t8 = t0 * (t0 * t7 - 2.755731920385087e-06) + 0.0001984126984118024
     t9 = t0 * (t0 * t8 - 0.008333333333333161) + 0.16666666666666666
-    t10 = 0.5 * (t4 * t4)
+    t10 = t4 * (t4 * 0.5)
     t11 = d_z * np.where(t0 < 3.0, t9, (1.0 - t5) * (0.25 / t2))
     t12 = d_z * t10
     t13 = d_x * t5 - d_y * t12
-    t14 = d_x * t12 + d_y * t5
+    t14 = d_x * t12 + t5 * d_y
     t15 = np.cos(d_z)
     t16 = np.sin(d_z)
     out[0] = x_c * t15 - x_s * t16
-    out[1] = x_s * t15 + x_c * t16
-    out[2] = x_x + (x_c * t13 - x_s * t14)
-    out[3] = x_y + (x_s * t13 + x_c * t14)
+    out[1] = t15 * x_s + x_c * t16
+    out[2] = x_x + x_c * t13 - x_s * t14
+    out[3] = x_c * t14 + (x_y + x_s * t13)
     out_D_x[0, 0] = t15
     out_D_x[0, 1] = t16
     out_D_x[0, 2] = t16 * t13 - t15 * t14

@@ -13,7 +13,7 @@
 #   x: 7, SE3 (qx, qy, qz, qw, x, y, z), given
 #   out: 6 x 6 matrix
 #
-# Operations: 51
+# Operations: 50
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -46,26 +46,26 @@ def se3_adjoint(x: npt.ArrayLike) -> Array:
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z = x
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
-    t2 = x_qz * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = 2.0 * x_qz
     t3 = x_qz * t2
-    t4 = 1.0 - (t1 + t3)
-    t5 = x_qx * t0
-    t6 = x_qw * t2
+    t4 = t1 - t3
+    t5 = t0 * x_qx
+    t6 = t2 * x_qw
     t7 = t5 - t6
-    t8 = x_qx * t2
-    t9 = x_qw * t0
+    t8 = t2 * x_qx
+    t9 = t0 * x_qw
     t10 = t8 + t9
     t11 = t5 + t6
-    t12 = x_qx * 2.0
+    t12 = 2.0 * x_qx
     t13 = x_qx * t12
-    t14 = 1.0 - (t3 + t13)
+    t14 = 1.0 - t3 - t13
     t15 = x_qy * t2
     t16 = x_qw * t12
     t17 = t15 - t16
     t18 = t8 - t9
     t19 = t15 + t16
-    t20 = 1.0 - (t1 + t13)
+    t20 = t1 - t13
     out[0, 0] = t4
     out[0, 1] = t7
     out[0, 2] = t10
@@ -75,21 +75,21 @@ def _value(x: Array, out: Array) -> None:
     out[2, 0] = t18
     out[2, 1] = t19
     out[2, 2] = t20
-    out[3, 0] = x_y * t18 - x_z * t11
-    out[3, 1] = x_y * t19 - x_z * t14
-    out[3, 2] = x_y * t20 - x_z * t17
+    out[3, 0] = t18 * x_y - t11 * x_z
+    out[3, 1] = t19 * x_y - t14 * x_z
+    out[3, 2] = t20 * x_y - t17 * x_z
     out[3, 3] = t4
     out[3, 4] = t7
     out[3, 5] = t10
-    out[4, 0] = x_z * t4 - x_x * t18
-    out[4, 1] = x_z * t7 - x_x * t19
-    out[4, 2] = x_z * t10 - x_x * t20
+    out[4, 0] = t4 * x_z - t18 * x_x
+    out[4, 1] = t7 * x_z - t19 * x_x
+    out[4, 2] = t10 * x_z - t20 * x_x
     out[4, 3] = t11
     out[4, 4] = t14
     out[4, 5] = t17
-    out[5, 0] = x_x * t11 - x_y * t4
-    out[5, 1] = x_x * t14 - x_y * t7
-    out[5, 2] = x_x * t17 - x_y * t10
+    out[5, 0] = t11 * x_x - t4 * x_y
+    out[5, 1] = t14 * x_x - t7 * x_y
+    out[5, 2] = t17 * x_x - t10 * x_y
     out[5, 3] = t18
     out[5, 4] = t19
     out[5, 5] = t20

@@ -87,19 +87,19 @@ def se3_between_jacobians(x: npt.ArrayLike, y: npt.ArrayLike) -> Se3BetweenJacob
 def _value(x: Array, y: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z = x
     y_qx, y_qy, y_qz, y_qw, y_x, y_y, y_z = y
-    t0 = y_x - x_x
-    t1 = y_y - x_y
-    t2 = y_z - x_z
-    t3 = (x_qz * t1 - x_qy * t2) * 2.0
-    t4 = 2.0 * (x_qx * t2 - x_qz * t0)
-    t5 = 2.0 * (x_qy * t0 - x_qx * t1)
-    out[0] = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy
-    out[1] = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx
-    out[2] = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw
-    out[3] = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz
-    out[4] = t0 + x_qw * t3 + (x_qz * t4 - x_qy * t5)
-    out[5] = t1 + x_qw * t4 + (x_qx * t5 - x_qz * t3)
-    out[6] = t2 + x_qw * t5 + (x_qy * t3 - x_qx * t4)
+    t0 = x_z - y_z
+    t1 = x_x - y_x
+    t2 = 2.0 * (x_qx * t0 - x_qz * t1)
+    t3 = x_y - y_y
+    t4 = (x_qz * t3 - x_qy * t0) * 2.0
+    t5 = 2.0 * (x_qy * t1 - x_qx * t3)
+    out[0] = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz)
+    out[1] = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz
+    out[2] = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz
+    out[3] = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx))
+    out[4] = x_qy * t5 - (x_qz * t2 + (t1 + x_qw * t4))
+    out[5] = x_qz * t4 - (x_qx * t5 + (t3 + x_qw * t2))
+    out[6] = x_qx * t2 - (x_qy * t4 + (t0 + x_qw * t5))
 
 
 def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -> None:

@@ -20,7 +20,7 @@
 #   out_D_x: 6 x 6, derivative of out by the tangent of x
 #   out_D_y: 6 x 6, derivative of out by the tangent of y
 #
-# Operations: 61 (outputs only), 112 (with Jacobians)
+# Operations: 61 (outputs only), 111 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -90,13 +90,13 @@ def _value(x: Array, y: Array, out: Array) -> None:
     t0 = 2.0 * (x_qx * y_y - x_qy * y_x)
     t1 = 2.0 * (x_qz * y_x - x_qx * y_z)
     t2 = (x_qy * y_z - x_qz * y_y) * 2.0
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz
-    out[4] = x_x + (y_x + x_qw * t2 + (x_qy * t0 - x_qz * t1))
-    out[5] = x_y + (y_y + x_qw * t1 + (x_qz * t2 - x_qx * t0))
-    out[6] = x_z + (y_z + x_qw * t0 + (x_qx * t1 - x_qy * t2))
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz))
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy)
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz
+    out[4] = x_qy * t0 + (x_qw * t2 + (x_x + y_x)) - x_qz * t1
+    out[5] = x_qz * t2 + (x_qw * t1 + (y_y + x_y)) - x_qx * t0
+    out[6] = x_qx * t1 + (x_qw * t0 + (y_z + x_z)) - x_qy * t2
 
 
 def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -> None:
@@ -106,10 +106,10 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     t1 = 2.0 * (x_qx * y_y - x_qy * y_x)
     t2 = 2.0 * (x_qz * y_x - x_qx * y_z)
     t3 = y_qy * 2.0
-    t4 = y_qy * t3
+    t4 = 1.0 - y_qy * t3
     t5 = y_qz * 2.0
     t6 = y_qz * t5
-    t7 = 1.0 - (t4 + t6)
+    t7 = t4 - t6
     t8 = y_qx * t3
     t9 = y_qw * t5
     t10 = t8 + t9
@@ -119,20 +119,20 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     t14 = t8 - t9
     t15 = y_qx * 2.0
     t16 = y_qx * t15
-    t17 = 1.0 - (t6 + t16)
+    t17 = 1.0 - t6 - t16
     t18 = y_qy * t5
     t19 = y_qw * t15
     t20 = t18 + t19
     t21 = t11 + t12
     t22 = t18 - t19
-    t23 = 1.0 - (t4 + t16)
-    out[0] = x_qw * y_qx + x_qx * y_qw + x_qy * y_qz - x_qz * y_qy
-    out[1] = x_qw * y_qy - x_qx * y_qz + x_qy * y_qw + x_qz * y_qx
-    out[2] = x_qw * y_qz + x_qx * y_qy - x_qy * y_qx + x_qz * y_qw
-    out[3] = x_qw * y_qw - x_qx * y_qx - x_qy * y_qy - x_qz * y_qz
-    out[4] = x_x + (y_x + x_qw * t0 + (x_qy * t1 - x_qz * t2))
-    out[5] = x_y + (y_y + x_qw * t2 + (x_qz * t0 - x_qx * t1))
-    out[6] = x_z + (y_z + x_qw * t1 + (x_qx * t2 - x_qy * t0))
+    t23 = t4 - t16
+    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy
+    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz))
+    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy)
+    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz
+    out[4] = x_qy * t1 + (x_qw * t0 + (x_x + y_x)) - x_qz * t2
+    out[5] = x_qz * t0 + (x_qw * t2 + (y_y + x_y)) - x_qx * t1
+    out[6] = x_qx * t2 + (x_qw * t1 + (y_z + x_z)) - x_qy * t0
     out_D_x[0, 0] = t7
     out_D_x[0, 1] = t10
     out_D_x[0, 2] = t13

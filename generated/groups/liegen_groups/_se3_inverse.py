@@ -17,7 +17,7 @@
 #   out: 7, SE3 (qx, qy, qz, qw, x, y, z)
 #   out_D_x: 6 x 6, derivative of out by the tangent of x
 #
-# Operations: 33 (outputs only), 84 (with Jacobians)
+# Operations: 33 (outputs only), 83 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -77,16 +77,16 @@ def se3_inverse_jacobians(x: npt.ArrayLike) -> Se3InverseJacobians:
 
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw, x_x, x_y, x_z = x
-    t0 = 2.0 * (x_qy * x_x - x_qx * x_y)
-    t1 = 2.0 * (x_qx * x_z - x_qz * x_x)
-    t2 = (x_qz * x_y - x_qy * x_z) * 2.0
+    t0 = 2.0 * (x_qx * x_z - x_qz * x_x)
+    t1 = (x_qz * x_y - x_qy * x_z) * 2.0
+    t2 = 2.0 * (x_qy * x_x - x_qx * x_y)
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = x_qy * t0 - x_qz * t1 - (x_x + x_qw * t2)
-    out[5] = x_qz * t2 - x_qx * t0 - (x_y + x_qw * t1)
-    out[6] = x_qx * t1 - x_qy * t2 - (x_z + x_qw * t0)
+    out[4] = x_qy * t2 - (x_qz * t0 + (x_x + x_qw * t1))
+    out[5] = x_qz * t1 - (x_qx * t2 + (x_y + x_qw * t0))
+    out[6] = x_qx * t0 - (x_qy * t1 + (x_z + x_qw * t2))
 
 
 def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
@@ -95,10 +95,10 @@ def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
     t1 = 2.0 * (x_qx * x_z - x_qz * x_x)
     t2 = 2.0 * (x_qy * x_x - x_qx * x_y)
     t3 = x_qy * (-2.0)
-    t4 = x_qy * t3
+    t4 = -1.0 - x_qy * t3
     t5 = x_qz * (-2.0)
     t6 = x_qz * t5
-    t7 = -1.0 - (t4 + t6)
+    t7 = t4 - t6
     t8 = x_qx * t3
     t9 = x_qw * t5
     t10 = t8 - t9
@@ -108,20 +108,20 @@ def _jacobians(x: Array, out: Array, out_D_x: Array) -> None:
     t14 = t8 + t9
     t15 = x_qx * (-2.0)
     t16 = x_qx * t15
-    t17 = -1.0 - (t6 + t16)
+    t17 = -1.0 - t6 - t16
     t18 = x_qy * t5
     t19 = x_qw * t15
     t20 = t18 - t19
     t21 = t11 - t12
     t22 = t18 + t19
-    t23 = -1.0 - (t4 + t16)
+    t23 = t4 - t16
     out[0] = -x_qx
     out[1] = -x_qy
     out[2] = -x_qz
     out[3] = x_qw
-    out[4] = x_qy * t2 - x_qz * t1 - (x_x + x_qw * t0)
-    out[5] = x_qz * t0 - x_qx * t2 - (x_y + x_qw * t1)
-    out[6] = x_qx * t1 - x_qy * t0 - (x_z + x_qw * t2)
+    out[4] = x_qy * t2 - (x_qz * t1 + (x_x + x_qw * t0))
+    out[5] = x_qz * t0 - (x_qx * t2 + (x_y + x_qw * t1))
+    out[6] = x_qx * t1 - (x_qy * t0 + (x_z + x_qw * t2))
     out_D_x[0, 0] = t7
     out_D_x[0, 1] = t10
     out_D_x[0, 2] = t13

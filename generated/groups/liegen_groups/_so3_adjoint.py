@@ -12,7 +12,7 @@
 #   x: 4, SO3 (qx, qy, qz, qw), given
 #   out: 3 x 3 matrix
 #
-# Operations: 24
+# Operations: 23
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -44,24 +44,24 @@ def so3_adjoint(x: npt.ArrayLike) -> Array:
 
 def _value(x: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw = x
-    t0 = x_qx * 2.0
-    t1 = x_qz * 2.0
+    t0 = 2.0 * x_qx
+    t1 = 2.0 * x_qz
     t2 = x_qw * t0
     t3 = x_qy * t1
     t4 = x_qy * 2.0
-    t5 = x_qw * t4
-    t6 = x_qx * t1
-    t7 = x_qw * t1
-    t8 = x_qx * t4
-    t9 = x_qx * t0
-    t10 = x_qz * t1
-    t11 = x_qy * t4
-    out[0, 0] = 1.0 - (t11 + t10)
+    t5 = t4 * x_qw
+    t6 = t1 * x_qx
+    t7 = t1 * x_qw
+    t8 = t4 * x_qx
+    t9 = x_qz * t1
+    t10 = x_qx * t0
+    t11 = 1.0 - x_qy * t4
+    out[0, 0] = t11 - t9
     out[0, 1] = t8 - t7
     out[0, 2] = t6 + t5
     out[1, 0] = t8 + t7
-    out[1, 1] = 1.0 - (t10 + t9)
+    out[1, 1] = 1.0 - t9 - t10
     out[1, 2] = t3 - t2
     out[2, 0] = t6 - t5
     out[2, 1] = t3 + t2
-    out[2, 2] = 1.0 - (t11 + t9)
+    out[2, 2] = t11 - t10

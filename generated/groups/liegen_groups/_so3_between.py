@@ -19,7 +19,7 @@
 #   out_D_x: 3 x 3, derivative of out by the tangent of x
 #   out_D_y: 3 x 3, derivative of out by the tangent of y
 #
-# Operations: 28 (outputs only), 52 (with Jacobians)
+# Operations: 28 (outputs only), 51 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -95,11 +95,11 @@ def _value(x: Array, y: Array, out: Array) -> None:
 def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -> None:
     x_qx, x_qy, x_qz, x_qw = x
     y_qx, y_qy, y_qz, y_qw = y
-    t0 = x_qw * y_qx - x_qx * y_qw - x_qy * y_qz + x_qz * y_qy
-    t1 = x_qw * y_qz - x_qx * y_qy + x_qy * y_qx - x_qz * y_qw
-    t2 = x_qw * y_qw + x_qx * y_qx + x_qy * y_qy + x_qz * y_qz
-    t3 = x_qw * y_qy + x_qx * y_qz - x_qy * y_qw - x_qz * y_qx
-    t4 = t0 * (-2.0)
+    t0 = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz)
+    t1 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz
+    t2 = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx))
+    t3 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz
+    t4 = t0 * 2.0
     t5 = t1 * (-2.0)
     t6 = t2 * t4
     t7 = t3 * t5
@@ -108,22 +108,22 @@ def _jacobians(x: Array, y: Array, out: Array, out_D_x: Array, out_D_y: Array) -
     t10 = t2 * t8
     t11 = t2 * t5
     t12 = t0 * t8
-    t13 = t0 * t4
-    t14 = t1 * t5
-    t15 = t3 * t8
+    t13 = t1 * t5
+    t14 = t0 * t4
+    t15 = -1.0 - t3 * t8
     out[0] = t0
     out[1] = t3
     out[2] = t1
     out[3] = t2
-    out_D_x[0, 0] = -1.0 - (t15 + t14)
+    out_D_x[0, 0] = t15 - t13
     out_D_x[0, 1] = t12 + t11
     out_D_x[0, 2] = t9 - t10
     out_D_x[1, 0] = t12 - t11
-    out_D_x[1, 1] = -1.0 - (t14 + t13)
-    out_D_x[1, 2] = t7 + t6
+    out_D_x[1, 1] = t14 + (-1.0 - t13)
+    out_D_x[1, 2] = t7 - t6
     out_D_x[2, 0] = t10 + t9
-    out_D_x[2, 1] = t7 - t6
-    out_D_x[2, 2] = -1.0 - (t15 + t13)
+    out_D_x[2, 1] = t7 + t6
+    out_D_x[2, 2] = t15 + t14
     out_D_y[0, 0] = 1.0
     out_D_y[1, 1] = 1.0
     out_D_y[2, 2] = 1.0

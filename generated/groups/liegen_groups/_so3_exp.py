@@ -17,7 +17,7 @@
 #   out: 4, SO3 (qx, qy, qz, qw)
 #   out_D_d: 3 x 3, derivative of out by the tangent of d
 #
-# Operations: 16 (outputs only), 61 (with Jacobians)
+# Operations: 16 (outputs only), 60 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -90,7 +90,7 @@ def _value(d: Array, out: Array) -> None:
 
 def _jacobians(d: Array, out: Array, out_D_d: Array) -> None:
     d_x, d_y, d_z = d
-    t0 = d_x * d_x + d_y * d_y + d_z * d_z
+    t0 = d_z * d_z + (d_x * d_x + d_y * d_y)
     t1 = 0.25 * t0
     t2 = np.where(t1 < 8.673617379884035e-19, 8.673617379884035e-19, t1)
     t3 = np.sqrt(t2)
@@ -105,7 +105,7 @@ def _jacobians(d: Array, out: Array, out_D_d: Array) -> None:
     t12 = 1.0 - t0 * t11
     t13 = d_x * t11
     t14 = d_y * t13
-    t15 = 0.5 * (t4 * t4)
+    t15 = t4 * t5
     t16 = d_z * t15
     t17 = d_z * t13
     t18 = d_y * t15

@@ -20,7 +20,7 @@
 #   out_D_x: 3 x 3, derivative of out by the tangent of x
 #   out_D_d: 3 x 3, derivative of out by the tangent of d
 #
-# Operations: 44 (outputs only), 113 (with Jacobians)
+# Operations: 44 (outputs only), 111 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -105,7 +105,7 @@ def _value(x: Array, d: Array, out: Array) -> None:
 def _jacobians(x: Array, d: Array, out: Array, out_D_x: Array, out_D_d: Array) -> None:
     x_qx, x_qy, x_qz, x_qw = x
     d_x, d_y, d_z = d
-    t0 = d_x * d_x + d_y * d_y + d_z * d_z
+    t0 = d_z * d_z + (d_x * d_x + d_y * d_y)
     t1 = 0.25 * t0
     t2 = np.where(t1 < 8.673617379884035e-19, 8.673617379884035e-19, t1)
     t3 = np.sqrt(t2)
@@ -116,21 +116,21 @@ def _jacobians(x: Array, d: Array, out: Array, out_D_x: Array, out_D_d: Array) -
     t8 = t0 * (t0 * t7 - 2.755731920385087e-06) + 0.0001984126984118024
     t9 = t0 * (t0 * t8 - 0.008333333333333161) + 0.16666666666666666
     t10 = np.where(t0 < 3.0, t9, (1.0 - t4 * t5) * (0.25 / t2))
-    t11 = 0.5 * (t4 * t4)
-    t12 = d_y * t10
-    t13 = d_x * t11
-    t14 = d_z * t12
-    t15 = d_x * t10
-    t16 = d_y * t11
-    t17 = d_z * t15
-    t18 = d_z * t11
-    t19 = d_y * t15
-    t20 = 1.0 - t0 * t10
-    t21 = 0.5 * t4
-    t22 = d_z * t21
-    t23 = d_x * t21
-    t24 = d_y * t21
-    t25 = t23 * (-2.0)
+    t11 = 0.5 * t4
+    t12 = t4 * t11
+    t13 = d_y * t10
+    t14 = d_x * t12
+    t15 = d_z * t13
+    t16 = d_x * t10
+    t17 = d_y * t12
+    t18 = d_z * t16
+    t19 = d_z * t12
+    t20 = d_y * t16
+    t21 = 1.0 - t0 * t10
+    t22 = d_z * t11
+    t23 = d_x * t11
+    t24 = d_y * t11
+    t25 = t23 * 2.0
     t26 = t22 * 2.0
     t27 = t5 * t25
     t28 = t24 * t26
@@ -141,26 +141,26 @@ def _jacobians(x: Array, d: Array, out: Array, out_D_x: Array, out_D_d: Array) -
     t33 = t23 * t29
     t34 = t22 * t26
     t35 = t23 * t25
-    t36 = t24 * t29
-    out[0] = x_qw * t23 + x_qx * t5 + x_qy * t22 - x_qz * t24
-    out[1] = x_qw * t24 - x_qx * t22 + x_qy * t5 + x_qz * t23
-    out[2] = x_qw * t22 + x_qx * t24 - x_qy * t23 + x_qz * t5
-    out[3] = x_qw * t5 - x_qx * t23 - x_qy * t24 - x_qz * t22
-    out_D_x[0, 0] = 1.0 - (t36 + t34)
+    t36 = 1.0 - t24 * t29
+    out[0] = x_qy * t22 + (x_qw * t23 + x_qx * t5) - x_qz * t24
+    out[1] = t23 * x_qz + (t5 * x_qy + (x_qw * t24 - x_qx * t22))
+    out[2] = t5 * x_qz + (x_qw * t22 + x_qx * t24 - t23 * x_qy)
+    out[3] = x_qw * t5 - t23 * x_qx - x_qy * t24 - t22 * x_qz
+    out_D_x[0, 0] = t36 - t34
     out_D_x[0, 1] = t33 + t32
     out_D_x[0, 2] = t30 - t31
     out_D_x[1, 0] = t33 - t32
-    out_D_x[1, 1] = 1.0 + (t35 - t34)
-    out_D_x[1, 2] = t28 - t27
+    out_D_x[1, 1] = 1.0 - t34 - t35
+    out_D_x[1, 2] = t28 + t27
     out_D_x[2, 0] = t31 + t30
-    out_D_x[2, 1] = t28 + t27
-    out_D_x[2, 2] = 1.0 + (t35 - t36)
-    out_D_d[0, 0] = t20 + d_x * t15
-    out_D_d[0, 1] = t19 + t18
-    out_D_d[0, 2] = t17 - t16
-    out_D_d[1, 0] = t19 - t18
-    out_D_d[1, 1] = t20 + d_y * t12
-    out_D_d[1, 2] = t14 + t13
-    out_D_d[2, 0] = t17 + t16
-    out_D_d[2, 1] = t14 - t13
-    out_D_d[2, 2] = t20 + d_z * (d_z * t10)
+    out_D_x[2, 1] = t28 - t27
+    out_D_x[2, 2] = t36 - t35
+    out_D_d[0, 0] = t21 + d_x * t16
+    out_D_d[0, 1] = t20 + t19
+    out_D_d[0, 2] = t18 - t17
+    out_D_d[1, 0] = t20 - t19
+    out_D_d[1, 1] = t21 + d_y * t13
+    out_D_d[1, 2] = t15 + t14
+    out_D_d[2, 0] = t18 + t17
+    out_D_d[2, 1] = t15 - t14
+    out_D_d[2, 2] = t21 + d_z * (d_z * t10)

@@ -20,7 +20,7 @@
 #   out_D_x: 3 x 3, derivative of out by the tangent of x
 #   out_D_p: 3 x 3, derivative of out by the tangent of p
 #
-# Operations: 39 (outputs only), 42 (with Jacobians)
+# Operations: 38 (outputs only), 41 (with Jacobians)
 # Regenerate: liegen generate --group SO2 --group SE2 --group SO3 --group SE3 --group SE23 --group Gal3 -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -88,52 +88,50 @@ def _value(x: Array, p: Array, out: Array) -> None:
     x_qx, x_qy, x_qz, x_qw = x
     p_x, p_y, p_z = p
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
-    t2 = x_qz * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = 2.0 * x_qz
     t3 = x_qz * t2
-    t4 = x_qx * t0
-    t5 = x_qw * t2
-    t6 = p_x * (1.0 - (t1 + t3)) + p_y * (t4 + t5)
-    t7 = x_qx * t2
-    t8 = x_qw * t0
-    t9 = x_qx * 2.0
-    t10 = x_qx * t9
-    t11 = p_x * (t4 - t5) + p_y * (1.0 - (t3 + t10))
-    t12 = x_qy * t2
-    t13 = x_qw * t9
-    t14 = p_x * (t7 + t8) + p_y * (t12 - t13)
-    out[0] = t6 + p_z * (t7 - t8)
-    out[1] = t11 + p_z * (t12 + t13)
-    out[2] = t14 + p_z * (1.0 - (t1 + t10))
+    t4 = t0 * x_qx
+    t5 = t2 * x_qw
+    t6 = t2 * x_qx
+    t7 = t0 * x_qw
+    t8 = 2.0 * x_qx
+    t9 = x_qx * t8
+    t10 = p_x * (t4 - t5) + p_y * (1.0 - t3 - t9)
+    t11 = x_qy * t2
+    t12 = x_qw * t8
+    out[0] = p_z * (t6 - t7) + (p_x * (t1 - t3) + p_y * (t4 + t5))
+    out[1] = p_z * (t11 + t12) + t10
+    out[2] = p_z * (t1 - t9) + (p_x * (t6 + t7) + p_y * (t11 - t12))
 
 
 def _jacobians(x: Array, p: Array, out: Array, out_D_x: Array, out_D_p: Array) -> None:
     x_qx, x_qy, x_qz, x_qw = x
     p_x, p_y, p_z = p
     t0 = x_qy * 2.0
-    t1 = x_qy * t0
-    t2 = x_qz * 2.0
+    t1 = 1.0 - x_qy * t0
+    t2 = 2.0 * x_qz
     t3 = x_qz * t2
-    t4 = 1.0 - (t1 + t3)
-    t5 = x_qx * t0
-    t6 = x_qw * t2
+    t4 = t1 - t3
+    t5 = t0 * x_qx
+    t6 = t2 * x_qw
     t7 = t5 + t6
-    t8 = x_qx * t2
-    t9 = x_qw * t0
+    t8 = t2 * x_qx
+    t9 = t0 * x_qw
     t10 = t8 - t9
-    t11 = p_x * t4 + p_y * t7 + p_z * t10
+    t11 = p_z * t10 + (p_x * t4 + p_y * t7)
     t12 = t5 - t6
-    t13 = x_qx * 2.0
+    t13 = 2.0 * x_qx
     t14 = x_qx * t13
-    t15 = 1.0 - (t3 + t14)
+    t15 = 1.0 - t3 - t14
     t16 = x_qy * t2
     t17 = x_qw * t13
     t18 = t16 + t17
-    t19 = p_x * t12 + p_y * t15 + p_z * t18
+    t19 = p_z * t18 + (p_x * t12 + p_y * t15)
     t20 = t8 + t9
     t21 = t16 - t17
-    t22 = 1.0 - (t1 + t14)
-    t23 = p_x * t20 + p_y * t21 + p_z * t22
+    t22 = t1 - t14
+    t23 = p_z * t22 + (p_x * t20 + p_y * t21)
     out[0] = t11
     out[1] = t19
     out[2] = t23

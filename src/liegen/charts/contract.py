@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from liegen.algebra.linear import Chain, Vector, negate
-from liegen.manifolds.form import Coords, Rule
+from liegen.manifolds.form import Compute, Coords, Rule
 
 from .chart import Chart
 
@@ -33,6 +33,10 @@ class FormChart(ABC):
     @abstractmethod
     def local_blocks(self) -> Rule:
         """Rule (result, x, y) -> blocks of ``local``."""
+
+    def local_between(self) -> tuple[Compute, Rule] | None:
+        """As that of :class:`GroupForm`, in this chart."""
+        return None
 
     @abstractmethod
     def columns(self, x: Coords) -> Chain:

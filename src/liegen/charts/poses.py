@@ -22,7 +22,7 @@ from liegen.algebra.linear import (
     transpose,
     zeros,
 )
-from liegen.manifolds.form import Blocks, Coords, PoseForm, Rule
+from liegen.manifolds.form import Blocks, Compute, Coords, PoseForm, Rule
 
 from .chart import Chart
 from .contract import FormChart, negated
@@ -114,6 +114,23 @@ class CoupledChart(PoseChart):
             return form.adjoint_inverse(form.exp(own)), by_d
 
         return blocks
+
+    def local_between(self) -> tuple[Compute, Rule] | None:
+        """E^-1 times the group's own, for the right side."""
+        known = None if self.left else self.form.local_between()
+        if known is None:
+            return None
+        own_value: Any = known[0]
+        own_rule: Any = known[1]
+
+        def value(z: Coords, x: Coords, y: Coords) -> Vector:
+            return matvec(self.E_inv, own_value(z, x, y))
+
+        def blocks(r: Coords, z: Coords, x: Coords, y: Coords) -> Blocks:
+            chains: tuple[Chain, ...] = own_rule(matvec(self.E, r), z, x, y)
+            return tuple([(self.E_inv, *chain) for chain in chains])
+
+        return value, blocks
 
     def local_blocks(self) -> Rule:
         """Right: -E^-1 Jl^-1, E^-1 Jr^-1; left: -d/dy, E^-1 Jr^-1 Ad(x)."""

@@ -75,8 +75,8 @@ def linearised(graph: Graph, values: Expressions, *, through_storage: bool = Fal
     edges: dict[tuple[int, int], Chain] = {}
     for node in graph.nodes():
         wanted = [id(n) in active for n in node.operands]
-        if id(node) not in active or not any(wanted):
-            continue
+        if id(node) not in active or not any(wanted) or not node.manifold.form.dim:
+            continue  # a condition has no derivative
         blocks = local_blocks(
             node.operation,
             values.scalars[id(node)],

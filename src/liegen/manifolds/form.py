@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.algebra import Scalar
-from liegen.algebra.linear import Chain, Matrix, Vector, eye, negate, product
+from liegen.algebra.linear import Chain, Matrix, Vector, diagonal, eye, negate, product, scale
 
 Coords = Sequence[Scalar]
 #: For each operand the derivative of a result, as a chain, or None where there is none.
@@ -196,6 +196,10 @@ class GroupForm(ManifoldForm):
     def between_blocks(self) -> Rule:
         """d/da = -Ad(c^-1) with c = a^-1 b, d/db = I (micro Lie, eq. 81)."""
         return lambda c, _a, _b: (_negated(self.adjoint_inverse(c)), (eye(self.dim),))
+
+    def part_way(self, r: Coords, a: Scalar) -> Chain:
+        """The product a Jr(a r) Jr^-1(r) for a logarithm r."""
+        return (diagonal((a,) * self.dim), self.Jr(scale(a, r)), self.Jr_inv(r, principal=True))
 
     def local_between(self) -> tuple[Compute, Rule] | None:
         """Value and rule of z.local(x.between(y)) as one operation on (z, x, y), where that saves any.

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from liegen.algebra import Scalar
-from liegen.algebra.linear import Chain, Matrix, Vector, matvec
+from liegen.algebra.linear import Chain, Matrix, Vector, matmul, matvec, sub, transpose
 from liegen.coefficients import inverse_jacobian, stumpff
 
-from .form import Coords, PoseForm
+from .form import Compute, Coords, PoseForm, Rule
+from .relative import relative_rule
 from .so2_form import SO2Form
 
 
@@ -41,6 +42,20 @@ class SE2Form(PoseForm):
         D, _ = inverse_jacobian(s)
         k = 1 - s * D
         return ((k, half), (-half, k))
+
+    def local_between(self) -> tuple[Compute, Rule]:
+        """The position part V^-1 R_z^T (t_c - t_z) is V^-T R_c^T (t_c - t_z).
+
+        The Jacobian by x has that product.
+        """
+
+        def value(z: Coords, x: Coords, y: Coords) -> Vector:
+            c = self.between(x, y)
+            (angle,) = self.rotation.local(z[:2], c[:2])
+            turned = matmul(transpose(self._V_inv(angle)), transpose(self.rotation.matrix(c[:2])))
+            return (*matvec(turned, sub(c[2:], z[2:])), angle)
+
+        return value, relative_rule(self)
 
     def adjoint(self, a: Coords) -> Chain:
         c, s, x, y = a

@@ -10,11 +10,11 @@ from .form import Blocks, Compute, Coords, RotationForm, Rule
 from .relative import relative_rule
 
 
-def series(phi: Coords, a: Scalar, b: Scalar) -> Matrix:
-    """I + a [phi]x + b [phi]x^2, with [phi]x^2 = phi phi^T - |phi|^2 I."""
+def series(phi: Coords, a: Scalar, b: Scalar, one: Scalar = 1) -> Matrix:
+    """I + a [phi]x + b [phi]x^2, with [phi]x^2 = phi phi^T - |phi|^2 I; ``one`` times I."""
     x, y, z = phi
     bx, by, bz = scale(b, phi)
-    k = 1 - b * dot(phi, phi)
+    k = one - b * dot(phi, phi)
     ax, ay, az = scale(a, phi)
     xy, xz, yz = bx * y, bx * z, by * z
     return (
@@ -78,6 +78,15 @@ class SO3Form(RotationForm):
         """I + [d]x / 2 + D [d]x^2 (micro Lie, eq. 144)."""
         D, _ = inverse_jacobian(dot(d, d), principal=principal)
         return series(d, 0.5, D)
+
+    def part_way(self, r: Coords, a: Scalar) -> Chain:
+        """Both factors are series in [r]x with [r]x^3 = -s [r]x, and so is their product."""
+        s = dot(r, r)
+        D, _ = inverse_jacobian(s, principal=True)
+        _, _, c2, c3 = stumpff(dot(scale(a, r), scale(a, r)), 3)
+        p, q = c2 * a, c3 * (a * a)
+        skewed, squared = 0.5 - p + s * (p * D - 0.5 * q), D + q - 0.5 * p - s * (q * D)
+        return (series(r, skewed * a, squared * a, a),)
 
     def local_between(self) -> tuple[Compute, Rule]:
         by_group = relative_rule(self)

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from liegen.program.program import Program
 
+from .contraction import contract
 from .dead_code import dead
 from .divisions import reciprocals
 from .factoring import factor
@@ -23,9 +24,9 @@ from .subexpressions import cse
 Pass = Callable[[Program], Program]
 
 #: Run in turn, again and again until nothing changes.
-PASSES: tuple[Pass, ...] = (cse, fold, terms, signs, factor, reciprocals)
+PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
 #: Run once at the end.
-FINAL: tuple[Pass, ...] = (dead, schedule)
+FINAL: tuple[Pass, ...] = (dead, contract, schedule)
 #: Rounds of ``PASSES`` at most.
 ROUNDS = 4
 

@@ -24,7 +24,7 @@ def terms(program: Program) -> Program:
     program is returned.
     """
     program = dead(program)
-    work = _Work(program)
+    work = Work(program)
     if not work.improve():
         return program
     found = work.emitted()
@@ -38,7 +38,7 @@ def _settled(program: Program) -> int:
     return program.operations - program.op_counts().get("neg", 0)
 
 
-class _Work:
+class Work:
     """The nodes of a program, those of ``groups`` as sums and products of many operands."""
 
     def __init__(self, program: Program) -> None:
@@ -85,9 +85,14 @@ class _Work:
         return found
 
     def add(self, node: Node) -> int:
+        """Append a node."""
         self.nodes.append(node)
         self.uses.append(0)
         return len(self.nodes) - 1
+
+    def contractible(self, term: Term) -> bool:
+        """Whether a term of a sum is a product with no other use."""
+        return self.nodes[term[0]].op == "mul" and self.uses[term[0]] == 1
 
     def improve(self) -> bool:
         """Share pairs, then take out factors; return whether anything was found."""
@@ -100,6 +105,7 @@ class _Work:
         return len(self.nodes) > start
 
     def share(self, groups: dict[int, list[Term]], kind: Kind, op: str) -> None:
+        """Make a node of each pair that several sums, or products, have."""
         pairs = Pairs(groups)
         while found := pairs.best():
             (a, b, relative), holders = found
@@ -164,7 +170,7 @@ class _Work:
 class _Emission:
     """Instructions of the nodes; ``index`` has for a node its instruction and in which sign that has it."""
 
-    def __init__(self, work: _Work) -> None:
+    def __init__(self, work: Work) -> None:
         self.work = work
         self.builder = Builder()
         self.index: dict[int, Term] = {}
