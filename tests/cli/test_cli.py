@@ -140,7 +140,7 @@ def test_generated_python_computes_what_the_factor_does(source, tmp_path):
 def test_generate_of_chosen_factors_and_targets(source, tmp_path):
     run("generate", source, "-f", "first_entries", "-t", "c", "-o", "out", "--layout", "col")
     files = tree(tmp_path / "out")
-    assert sorted(p for p in files if p.endswith(".c")) == ["c/first_entries.c"]
+    assert sorted(p for p in files if p.endswith(".c")) == ["c/first_entries.c", "c/first_entries_batch.c"]
     assert not any(p.endswith(".py") for p in files)
     assert "first_entries_cm" in files["c/first_entries.h"]
     command = "liegen generate robot.py -f first_entries -t c -o DIR --layout col"

@@ -3,25 +3,48 @@
 from __future__ import annotations
 
 import ctypes
+import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
+import pytest
+from emit_tools import C99, FLAGS, compiler
 
+from liegen.emit import render
 from liegen.kernel import Kernel
+from liegen.verify.batches import In, Out, batch_function
 
+PACKAGE = "demo"
+#: Widths, with and without fused operations where this machine has them.
+WIDTHS = [["-DLANES=1"], ["-DLANES=2"], ["-DLANES=8"], ["-march=native", "-ffp-contract=fast"]]
+#: Every width, whatever this machine has; outputs past the caches at any size; threads.
+BUILDS = {
+    "1 lane": ["-DLANES=1"],
+    "2 lanes": ["-DLANES=2"],
+    "4 lanes": ["-DLANES=4"],
+    "8 lanes": ["-DLANES=8"],
+    "streams": ["-DDEMO_STREAM_BYTES=0"],
+    "threads": ["-fopenmp", "-DDEMO_OPENMP"],
+}
 CANARY = 777.0
 
 
-class In(ctypes.Structure):
-    _fields_ = [
-        ("data", ctypes.c_void_p), ("stride", ctypes.c_ssize_t), ("comp", ctypes.c_ssize_t),
-        ("index", ctypes.c_void_p),
-    ]  # fmt: skip
-
-
-class Out(ctypes.Structure):
-    _fields_ = [("data", ctypes.c_void_p), ("stride", ctypes.c_ssize_t), ("comp", ctypes.c_ssize_t)]
+def built(kernels: Sequence[Kernel], folder: Path, flags: Sequence[str]) -> ctypes.CDLL:
+    """The C of the kernels, compiled without contraction to fused operations."""
+    folder.mkdir(exist_ok=True)
+    for path, text in render(kernels, ["c"], package=PACKAGE, regenerate="liegen generate").items():
+        (folder / path).parent.mkdir(exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
+    sources = sorted(map(str, (folder / "c").glob("*.c")))
+    shared = folder / "demo.so"
+    command = [compiler(), *C99, *FLAGS, "-Wno-psabi", *flags, "-shared", "-fPIC", "-o", str(shared)]
+    done = subprocess.run([*command, *sources, "-lm"], capture_output=True, text=True, check=False)
+    if done.returncode and "-fopenmp" in flags and "openmp" in done.stderr:
+        pytest.skip("this compiler has no OpenMP")
+    assert not done.returncode, done.stderr
+    return ctypes.CDLL(str(shared))
 
 
 @dataclass(frozen=True)
@@ -57,7 +80,7 @@ LAYOUTS = (
 
 
 def call_batch(
-    function: ctypes._NamedFuncPointer,
+    library: ctypes.CDLL,
     kernel: Kernel,
     values: Mapping[str, np.ndarray],
     n: int,
@@ -98,8 +121,7 @@ def call_batch(
         for p in ports
     ]
     status = np.full(n + 2, 99, np.uint8)
-    function.restype = ctypes.c_int
-    function.argtypes = [ctypes.c_ssize_t] + [In] * len(ins) + [Out] * len(outs) + [ctypes.c_void_p]
+    function = batch_function(library, PACKAGE, kernel)
     code = function(n, *ins, *outs, status.ctypes.data + 1 if with_status else None)
     assert status[0] == status[-1] == 99
     got: dict[str, np.ndarray] = {}

@@ -50,6 +50,8 @@ def test_good_names_pass() -> None:
         ("np", "is reserved", "'np_1'"),
         ("sqrt", "is reserved", "'sqrt_1'"),
         ("status", "is reserved", "'status_1'"),
+        ("lanes", "is reserved", "'lanes_1'"),
+        ("sqrtf", "is reserved", "'sqrtf_1'"),
         ("evaluate", "is reserved", "'evaluate_1'"),
         ("t0", "is the name of a temporary", "'t0_1'"),
         ("t31", "is the name of a temporary", "'t31_1'"),
@@ -137,4 +139,5 @@ def test_two_factors(first: str, second: str, reason: str) -> None:
 
 
 def test_a_factor_named_like_the_package() -> None:
-    assert "is named like the package" in refusal([called("Demo")])
+    assert "the same file as the package 'demo', c/Demo.h" in refusal([called("Demo")])
+    assert "the same file as the package 'demo', c/demo_lanes.h" in refusal([called("demo_lanes")])

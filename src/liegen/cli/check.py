@@ -85,7 +85,8 @@ def _request(stated: str, folder: Path, source: str | None) -> Request:
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
     options = ("names", "targets", "package", "layout", "groups", "chart", "noise", "loss", "mode")
-    return replace(requested(original, *(given[key] for key in options)), source=place)
+    request = requested(original, *(given[key] for key in options), scalar=given["scalar"])
+    return replace(request, source=place)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 TARGETS = ("numpy", "c")
 LAYOUTS = ("row", "col")
+SCALARS = ("double", "float")
 #: Stands for the output folder in the headers: files are the same wherever they are written.
 ANYWHERE = "DIR"
 
@@ -49,6 +50,7 @@ class Request:
     noise: str | None = None
     loss: str | None = None
     mode: str | None = None
+    scalar: str = SCALARS[0]
 
     def chosen(self, source: str | None) -> tuple[AnyFunction, ...]:
         """The factors that are asked for, of ``source``, whitened and robust as asked for."""
@@ -63,6 +65,7 @@ class Request:
         words += ["-o", directory]
         words += [] if self.package == default_package(source, self.groups) else ["--package", self.package]
         words += [] if self.layout == LAYOUTS[0] else ["--layout", self.layout]
+        words += [] if self.scalar == SCALARS[0] else ["--scalar", self.scalar]
         for option in ("chart", "noise", "loss", "mode"):
             words += [f"--{option}", getattr(self, option)] if getattr(self, option) else []
         return shlex.join(words)
@@ -91,12 +94,13 @@ def requested(
     layout: str,
     groups: Sequence[str] = (),
     *options: str | None,
+    scalar: str = SCALARS[0],
 ) -> Request:
-    """Fill in the defaults; ``weighting`` is noise, loss and mode."""
+    """Fill in the defaults; ``options`` are chart, noise, loss and mode."""
     wanted = tuple(t for t in TARGETS if not targets or t in targets)
     called = package or default_package(source, groups)
     unique = tuple(dict.fromkeys(names)), tuple(dict.fromkeys(groups))
-    return Request(source, unique[0], wanted, called, layout, unique[1], *options)
+    return Request(source, unique[0], wanted, called, layout, unique[1], *options, scalar=scalar)
 
 
 def derived(functions: Sequence[AnyFunction]) -> list[Kernel]:
@@ -119,6 +123,7 @@ def rendered(request: Request, functions: Sequence[AnyFunction], regenerate: str
         package=request.package,
         regenerate=regenerate,
         layout=request.layout,
+        scalar=request.scalar,
     )
 
 
@@ -144,6 +149,10 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
     "--layout", type=click.Choice(LAYOUTS), default=LAYOUTS[0], show_default=True,
     help="col adds C functions with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
+@click.option(
+    "--scalar", type=click.Choice(SCALARS), default=SCALARS[0], show_default=True,
+    help="float adds C functions in single precision (suffix _f32).",
+)  # fmt: skip
 @chart_option
 @noise_options
 def generate(
@@ -154,6 +163,7 @@ def generate(
     output: str,
     package: str | None,
     layout: str,
+    scalar: str,
     chart: str | None,
     noise: str | None,
     loss: str | None,
@@ -162,7 +172,8 @@ def generate(
     """Write NumPy to DIR/NAME/ and C to DIR/c/, all files or none."""
     from liegen.emit import write_tree
 
-    request = requested(source, names, targets, package, layout, groups, chart, noise, loss, mode)
+    options = (chart, noise, loss, mode)
+    request = requested(source, names, targets, package, layout, groups, *options, scalar=scalar)
     functions = request.chosen(source)
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")

@@ -1,4 +1,4 @@
-"""Batches in C: one straight-line body on ``lanes``, a vector of as many factors as the machine takes at once.
+"""Batches in C: one straight-line body on ``lanes``, as many factors as the machine takes at once.
 
 The body is printed once for each program. The type ``lanes`` is a GCC vector or, for other compilers, a
 double; the header of the package (``templates/c/lanes.h.j2``) says which.
@@ -10,13 +10,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from liegen.kernel import Kernel
-from liegen.program import Port, Program
+from liegen.program import Program
 from liegen.program.rewrite import Builder, rebuilt
 
 from .header import closing
 from .printer import Assignment, Listing, Store, condition_indices, print_program
 from .syntax import CHOICE, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
-from .target import Options, scalar_names
+from .target import Options, scalar_names, words
 
 #: One strength for comparisons, & and |: compilers warn of one bare within another.
 _CONDITION = CHOICE + 1
@@ -29,7 +29,7 @@ SYNTAX = Syntax(
     },
     calls={
         name: f"lanes_{name}"
-        for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "abs", "atan2", "not", "select")
+        for name in words("sqrt sin cos tan asin acos atan exp log abs atan2 not select")
     },
     constant=spell("NAN", "INFINITY"),
     truth={True: "LANES_TRUE", False: "LANES_FALSE"},
@@ -37,6 +37,11 @@ SYNTAX = Syntax(
     sincos="lanes_sincos({0}, &{1}, &{2})",
 )  # fmt: skip
 
+#: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
+BATCH_NAMES = words("""
+    LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
+    lanes_finish block_value block_jacobians ptrdiff_t uint8_t
+""").union(SYNTAX.calls.values())
 _FORMATS = {
     "scalar": "const lanes {0} = {1};",
     "condition": "const lanes_mask {0} = {1};",
@@ -152,9 +157,16 @@ class _Names:
 def _names(kernel: Kernel) -> _Names:
     ports = [*(a.name for a in kernel.arguments), *(p.name for p in kernel.jacobians.outputs)]
     used = {*ports, *scalar_names(kernel)}
-    own = ("n", "k", "count", "held", "broken", "violated", "jacobians", "stream", "room")
     arrays = {name: _fresh(f"{name}_lanes", used) for name in ports}
-    return _Names(*(_fresh(name, used) for name in own), arrays)
+
+    def own(name: str) -> str:
+        return _fresh(name, used)
+
+    return _Names(
+        n=own("n"), k=own("k"), count=own("count"), held=own("held"), broken=own("broken"),
+        violated=own("violated"), jacobians=own("jacobians"), stream=own("stream"), room=own("room"),
+        arrays=arrays,
+    )  # fmt: skip
 
 
 def _indented(condition: str, lines: Sequence[str]) -> list[str]:
@@ -180,7 +192,9 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
         passed = f"{names.arrays[name]}, {names.room}, {names.stream}"
         return f"{package}_store({name}, {sizes[name]}, {place}, {passed});"
 
-    lines = [f"const int {names.count} = {names.n} - {names.k} < LANES ? (int)({names.n} - {names.k}) : LANES;"]
+    lines = [
+        f"const int {names.count} = {names.n} - {names.k} < LANES ? (int)({names.n} - {names.k}) : LANES;"
+    ]
     lines += [f"lanes {names.arrays[a.name]}[{a.size}];" for a in kernel.arguments]
     lines += [f"lanes {names.arrays[name]}[{size}];" for name, size in sizes.items()]
     lines += [f"lanes {names.room}[{max(sizes.values())}];"]
@@ -212,7 +226,11 @@ def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
     size = {name: sum(p.size for p in program.outputs) for program, name in programs}
     values = {o.name for o in kernel.outputs}
     wanted = " || ".join(f"{p.name}.data != NULL" for p in kernel.jacobians.outputs if p.name not in values)
-    total = f"{names.jacobians} ? {size['block_jacobians']} : {size['block_value']}" if wanted else str(size["block_value"])
+    total = (
+        f"{names.jacobians} ? {size['block_jacobians']} : {size['block_value']}"
+        if wanted
+        else str(size["block_value"])
+    )
     batch = Batch(
         name=f"{options.package}_{batch_name(kernel)}",
         parameters=batch_parameters(kernel, options, names.n),

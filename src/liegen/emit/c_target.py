@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from liegen.errors import DefinitionError
 from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
-from .c_batch import batch_name, printed_batch
+from .c_batch import BATCH_NAMES, batch_name, printed_batch
 from .elementary_text import elementary_text
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .printer import Assignment, Listing, Store, print_program
@@ -34,7 +36,31 @@ SYNTAX = Syntax(
     choice="{0} ? {1} : {2}",
 )  # fmt: skip
 
-_TYPES = {"scalar": "double", "condition": "int"}
+
+def _spell_single(value: float) -> str:
+    with np.errstate(over="ignore", under="ignore"):
+        rounded = np.float32(value)
+    if not np.isfinite(rounded):
+        return SYNTAX.constant(float(rounded))
+    digits = np.format_float_positional if 1e-4 <= abs(rounded) < 1e8 else np.format_float_scientific
+    return f"{digits(rounded, unique=True, trim='0')}f"
+
+
+@dataclass(frozen=True)
+class Precision:
+    """A scalar type of C: its name, the suffix of its functions, how operations on it are spelt."""
+
+    type: str
+    suffix: str
+    syntax: Syntax
+
+
+DOUBLE = Precision("double", "", SYNTAX)
+SINGLE = Precision(
+    "float",
+    "_f32",
+    replace(SYNTAX, calls={op: f"{name}f" for op, name in SYNTAX.calls.items()}, constant=_spell_single),
+)
 _STATUS = "The result is 0, or the bits of the requirements that do not hold."
 #: Requirements that the status of a batch, a byte for each factor, has bits for.
 _BITS = 8
@@ -65,6 +91,7 @@ class Function:
     body: tuple[str, ...]
     outputs: tuple[Output, ...]
     jacobians: tuple[str, ...]
+    fill: str
 
 
 def value_name(kernel: Kernel) -> str:
@@ -78,12 +105,18 @@ def value_name(kernel: Kernel) -> str:
 
 
 def symbols(kernel: Kernel) -> tuple[str, ...]:
-    """What the source of a kernel defines, without the package's prefix, in either layout."""
-    return (kernel.name, value_name(kernel), f"{kernel.name}_cm", batch_name(kernel))
+    """What the sources of a kernel define, without the package's prefix, in any layout and precision."""
+    single = [f"{name}{SINGLE.suffix}" for name in _names(kernel)]
+    return (*_names(kernel), *single, batch_name(kernel))
 
 
-def _assign(assignment: Assignment) -> str:
-    return f"const {_TYPES[assignment.kind]} {assignment.name} = {assignment.text};"
+def _names(kernel: Kernel) -> tuple[str, ...]:
+    return (kernel.name, value_name(kernel), f"{kernel.name}_cm")
+
+
+def _assign(assignment: Assignment, precision: Precision) -> str:
+    kind = "int" if assignment.kind == "condition" else precision.type
+    return f"const {kind} {assignment.name} = {assignment.text};"
 
 
 def _stores(port: Port, stores: Sequence[Store], column_major: bool) -> tuple[str, ...]:
@@ -97,9 +130,15 @@ def _status(listing: Listing) -> str:
 
 
 def _function(
-    kernel: Kernel, program: Program, options: Options, suffix: str, column_major: bool
+    kernel: Kernel,
+    program: Program,
+    options: Options,
+    suffix: str,
+    column_major: bool,
+    precision: Precision = DOUBLE,
 ) -> Function:
-    listing = print_program(program, SYNTAX, scalar_names(kernel))
+    listing = print_program(program, precision.syntax, scalar_names(kernel))
+    scalar = precision.type
     prefix = f"{options.package}_"
     pointer = "*" if kernel.in_place else f"*{options.package.upper()}_RESTRICT "
     values = {o.name for o in kernel.outputs}
@@ -108,31 +147,43 @@ def _function(
     order = "column-major" if column_major else "row-major"
     read = {load.port for load in listing.loads}
     return Function(
-        name=f"{prefix}{suffix}",
-        summary=_summary(kernel, program, order),
+        name=f"{prefix}{suffix}{precision.suffix}",
+        summary=_summary(kernel, program, order, precision),
         parameters=(
-            *(f"const double {pointer}{a.name}" for a in kernel.arguments),
-            *(f"double {pointer}{port.name}" for port in program.outputs),
+            *(f"const {scalar} {pointer}{a.name}" for a in kernel.arguments),
+            *(f"{scalar} {pointer}{port.name}" for port in program.outputs),
         ),
-        fallback=f"{prefix}{value_name(kernel)}({', '.join(passed)})",
+        fallback=f"{prefix}{value_name(kernel)}{precision.suffix}({', '.join(passed)})",
         unused=tuple(a.name for a in kernel.arguments if a.name not in read),
-        loads=tuple(f"const double {load.name} = {load.port}[{load.index}];" for load in listing.loads),
-        guard=tuple(map(_assign, listing.guard)),
+        loads=tuple(f"const {scalar} {load.name} = {load.port}[{load.index}];" for load in listing.loads),
+        guard=tuple(_assign(a, precision) for a in listing.guard),
         status=_status(listing),
         outputs=tuple(
             Output(port.name, port.size, port.name not in values, _stores(port, stores, column_major))
             for port, stores in zip(program.outputs, listing.stores, strict=True)
         ),
         jacobians=jacobians,
-        body=tuple(map(_assign, listing.body)),
+        body=tuple(_assign(a, precision) for a in listing.body),
+        fill=f"{options.package}_{kernel.name}_fill{precision.suffix}",
     )
 
 
-def _summary(kernel: Kernel, program: Program, order: str) -> str:
+def _summary(kernel: Kernel, program: Program, order: str, precision: Precision) -> str:
+    single = ", in single precision" if precision is SINGLE else ""
     if not kernel.variables:
-        return f"Value ({order})."
+        return f"Value ({order}){single}."
     jacobians = len(program.outputs) > len(kernel.outputs)
-    return f"Value and Jacobians ({order}); any Jacobian may be NULL." if jacobians else "Value only."
+    if jacobians:
+        return f"Value and Jacobians ({order}){single}; any Jacobian may be NULL."
+    return f"Value only{single}."
+
+
+def _functions(kernel: Kernel, options: Options, precision: Precision) -> list[Function]:
+    """Value, Jacobians by rows, Jacobians by columns, as far as they are asked for."""
+    rows = [(kernel.value, value_name(kernel), False)]
+    rows += [(kernel.jacobians, kernel.name, False)] if kernel.variables else []
+    rows += [(kernel.jacobians, f"{kernel.name}_cm", True)] if options.layout == "col" else []
+    return [_function(kernel, program, options, name, by, precision) for program, name, by in rows]
 
 
 def _overlap(kernel: Kernel) -> tuple[str, ...]:
@@ -148,12 +199,9 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
             f"{kernel.name} ({kernel.site}): {len(kernel.value.requirements)} requirements, but the status "
             f"of a factor has {_BITS} bits in C; join some conditions"
         )
-    value, name = value_name(kernel), kernel.name
-    functions = [_function(kernel, kernel.value, options, value, False)]
-    if kernel.variables:
-        functions.append(_function(kernel, kernel.jacobians, options, name, False))
-    if options.layout == "col":
-        functions.append(_function(kernel, kernel.jacobians, options, f"{name}_cm", True))
+    name = kernel.name
+    precisions = (DOUBLE, SINGLE) if options.scalar == "float" else (DOUBLE,)
+    functions = [f for precision in precisions for f in _functions(kernel, options, precision)]
     shapes = [f"{a.name}[{' * '.join(map(str, a.shape))}]: {argument_text(a)}" for a in kernel.arguments]
     shapes += [f"{o.name}[{' * '.join(map(str, o.shape))}]: {storage_text(o)}" for o in kernel.outputs]
     shapes += [f"{j}[{m} * {n}]: {m} x {n}, {meaning}" for j, (m, n), meaning in jacobian_texts(kernel)]
@@ -166,7 +214,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
         "functions": tuple(functions),
         "shapes": (*_overlap(kernel), *shapes),
         "checked": bool(kernel.value.requirements),
-        "fill": f"{options.package}_{name}_fill",
+        "fills": tuple((f"{options.package}_{name}_fill{p.suffix}", p.type) for p in precisions),
         **printed_batch(kernel, options),
     }
 
@@ -194,7 +242,9 @@ TARGET = Target(
     public=symbols,
     keywords={"C": C_KEYWORDS, "C++": CPP_KEYWORDS},
     # "linux" and "unix" are macros of compilers there.
-    reserved=words("status NULL NAN INFINITY linux unix").union(SYNTAX.calls.values()),
+    reserved=words("status NULL NAN INFINITY linux unix").union(
+        SYNTAX.calls.values(), SINGLE.syntax.calls.values(), BATCH_NAMES
+    ),
     files=HEADERS,
     factor_sheets=(
         Sheet("c/factor.h.j2", "c/{factor}.h"),

@@ -113,11 +113,14 @@ def _clash(name: str, seen: Iterable[str], outputs: Iterable[str]) -> str:
 def _check_together(kernels: Sequence[Kernel], package: str) -> None:
     """Two factors must not define one name, on file systems that ignore case either."""
     owners: dict[str, tuple[Kernel, str]] = {}
+    shared = {s.path.format(package=package).lower() for t in TARGETS for s in t.package_sheets}
     for kernel in kernels:
-        if kernel.name.lower() == package.lower():
+        own = [s.path.format(package=package, factor=kernel.name) for t in TARGETS for s in t.factor_sheets]
+        both = [path for path in own if path.lower() in shared]
+        if both:
             raise DefinitionError(
-                f"factor {kernel.name!r} ({kernel.site}) is named like the package {package!r}, whose header "
-                "would be the same file; rename one of them"
+                f"factor {kernel.name!r} ({kernel.site}) would make the same file as the package "
+                f"{package!r}, {both[0]}; rename one of them"
             )
         for name in _public(kernel):
             other, theirs = owners.setdefault(name.lower(), (kernel, name))

@@ -143,7 +143,7 @@ def _temporaries(
     usage: _Usage,
     pairs: Mapping[int, tuple[int, int]],
 ) -> set[int]:
-    """The instructions that get a name: read more than once, too long for the line that reads them, paired."""
+    """The instructions that get a name: read more than once, too long for their line, or paired."""
     chosen = {k for k, count in usage.counts.items() if (count > 1 and k not in leaves) or k in pairs}
     texts = dict(leaves)
     for k in sorted(usage.counts.keys() - leaves.keys()):
@@ -166,7 +166,9 @@ def _pairs(program: Program, syntax: Syntax, usage: _Usage) -> dict[int, tuple[i
     if not syntax.sincos:
         return {}
     used = [k for k in usage.counts if k not in usage.constants]
-    sines, cosines = ({program.code[k].args[0]: k for k in used if program.code[k].op == op} for op in ("sin", "cos"))
+    sines, cosines = (
+        {program.code[k].args[0]: k for k in used if program.code[k].op == op} for op in ("sin", "cos")
+    )
     pairs = {(sines[a], cosines[a]) for a in sines.keys() & cosines.keys()}
     same = [p for p in pairs if (p[0] in usage.guard) == (p[1] in usage.guard)]
     return {k: pair for pair in same for k in pair}

@@ -19,6 +19,7 @@ from .targets import TARGETS
 from .templates import lay_out
 
 LAYOUTS = ("row", "col")
+SCALARS = ("double", "float")
 #: Says what a manifest is; changes when a reader of an older one would misread it.
 FORMAT = "liegen manifest 1"
 
@@ -30,19 +31,21 @@ def render(
     package: str,
     regenerate: str,
     layout: str = "row",
+    scalar: str = "double",
 ) -> dict[str, str]:
     """All files of a package, by relative path; the manifest ``<package>.json`` comes last.
 
     ``targets`` are names of :data:`TARGETS`; ``regenerate`` is the command line that makes the same files.
-    ``layout`` ``"col"`` adds C functions with column-major Jacobians. Nothing is written. Raises
-    :class:`DefinitionError` for names that some language refuses, :class:`OutputError` for an unknown
-    target or layout.
+    ``layout`` ``"col"`` adds C functions with column-major Jacobians, ``scalar`` ``"float"`` those in single
+    precision. Nothing is written. Raises :class:`DefinitionError` for names that some language refuses,
+    :class:`OutputError` for an unknown target, layout or scalar.
     """
     rows = {target.name: target for target in TARGETS}
     _known("target", targets, list(rows))
     _known("layout", [layout], list(LAYOUTS))
+    _known("scalar", [scalar], list(SCALARS))
     check_names(kernels, package)
-    options = Options(package, regenerate, layout)
+    options = Options(package, regenerate, layout, scalar)
     chosen = [target for target in TARGETS if target.name in targets]
     files: dict[str, str] = {}
     for target in chosen:

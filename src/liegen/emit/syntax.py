@@ -35,8 +35,8 @@ class Syntax:
     """How a language spells the operations of a program.
 
     ``choice`` is the format of a select where it is no call: ``"{0} ? {1} : {2}"``. ``lift`` is the format of
-    a number where the language takes no plain one: as an argument of a call and as a result. ``sincos`` is the
-    format of a call for both functions of an angle: ``"sincos({0}, &{1}, &{2})"``.
+    a number where the language takes no plain one: as an argument of a call and as a result. ``sincos``
+    is the format of a call for both functions of an angle: ``"sincos({0}, &{1}, &{2})"``.
     """
 
     operators: Mapping[str, Operator]

@@ -10,11 +10,12 @@ from liegen.kernel import Kernel
 
 @dataclass(frozen=True)
 class Options:
-    """What the caller chose: the package's name, the command that regenerates it, the Jacobians' layout."""
+    """What the caller chose: package, the command that regenerates it, the Jacobians' layout, the scalars."""
 
     package: str
     regenerate: str
     layout: str = "row"
+    scalar: str = "double"
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,8 @@ class Target:
 
     ``public`` lists what the code of a kernel defines for its users, without a prefix that all share.
     ``keywords`` maps a language to its keywords; ``reserved`` are names that the templates use, ``files``
-    names whose file would hide another one. No name of a factor may be one of them. ``package_names`` are what
-    the package's templates lay out beside the factors.
+    names whose file would hide another one. No name of a factor may be one of them. ``package_names``
+    are what the package's templates lay out beside the factors.
     """
 
     name: str

@@ -35,7 +35,7 @@ class Out(ctypes.Structure):
 
 
 def batch_function(library: ctypes.CDLL, package: str, kernel: Kernel) -> Callable[..., int]:
-    """``PACKAGE_NAME_batch`` with its types: n, an ``In`` for each argument, an ``Out`` for each output, status."""
+    """``PACKAGE_NAME_batch`` with its types: n, an ``In`` by argument, an ``Out`` by output, status."""
     function = library[f"{package}_{batch_name(kernel)}"]
     outputs = len(kernel.jacobians.outputs)
     function.restype = ctypes.c_int
