@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import os
 import pickle
@@ -10,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 import warnings
+import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -168,6 +171,18 @@ def test_a_full_or_read_only_disk(folder, monkeypatch, code):
     assert entries(folder) == []
 
 
+def test_a_disk_without_execution(folder, monkeypatch):
+    load = ctypes.CDLL
+
+    def fail(path):
+        if folder in Path(path).parents:
+            raise OSError("failed to map segment from shared object")
+        return load(path)
+
+    monkeypatch.setattr(build.ctypes, "CDLL", fail)
+    refused("cannot load from it: failed to map segment")
+
+
 def test_no_home(monkeypatch, folder):
     monkeypatch.delenv("LIEGEN_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", "relative/paths/do/not/count")
@@ -247,6 +262,13 @@ def test_a_compiler_that_does_not_know_the_processor(folder, tmp_path, monkeypat
     works(liegen.compile(rotated))
 
 
+@pytest.mark.slow
+def test_the_compiler_of_the_package_ziglang(folder, monkeypatch):
+    pytest.importorskip("ziglang")
+    monkeypatch.setenv("CC", f"{sys.executable} -m ziglang cc")
+    assert works(liegen.compile(rotated)).backend == "c"
+
+
 @pytest.fixture
 def no_compiler(monkeypatch, tmp_path):
     monkeypatch.delenv("CC", raising=False)
@@ -322,7 +344,11 @@ def test_pickles_in_another_process(kept, tmp_path, place):
 
 
 def test_a_pickle_of_another_version():
-    function, (name, digest, packed, asked) = liegen.compile(pixel).__reduce__()
+    k = liegen.compile(pixel)
+    function, (name, digest, packed, asked) = k.__reduce__()
+    other = replace(k.source, floats=f"{k.source.floats}\n")
+    with pytest.raises(ToolError, match="pixel was pickled by another version"):
+        function(name, digest, zlib.compress(pickle.dumps(other)), asked)
     with pytest.raises(ToolError, match=r"pixel was pickled by another version of liegen; call liegen\.comp"):
         function(name, digest[::-1], packed, asked)
     with pytest.raises(ToolError, match="pixel was pickled by another version"):

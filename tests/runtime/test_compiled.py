@@ -214,13 +214,21 @@ def test_single_precision(compiled):
     k = compiled(between)
     (x, y), given = arguments(between, (9,))
     single = [a.astype(np.float32) for a in (x, y, given["z"])]
-    made = k.jacobians(*single[:2], z=single[2])
-    exact = k.jacobians(*(a.astype(np.float64) for a in single[:2]), z=single[2].astype(np.float64))
-    kinds = {a.dtype for a in made}
-    assert kinds == {liegen.compile(between, backend="numpy").jacobians(*single[:2], z=single[2]).res.dtype}
-    for a, b in zip(made, exact, strict=True):
-        np.testing.assert_allclose(a, b, rtol=1e-4, atol=1e-4)
+    double = [a.astype(np.float64) for a in single]
+    for size in (slice(None), 0):  # a batch, one element
+        made = k.jacobians(*(a[size] for a in single[:2]), z=single[2][size])
+        exact = k.jacobians(*(a[size] for a in double[:2]), z=double[2][size])
+        for a, b in zip(made, exact, strict=True):
+            assert a.dtype == np.float32
+            # computed in double, rounded once
+            np.testing.assert_allclose(a, b, rtol=2**-24, atol=2**-40)
     assert k(x, single[1], z=single[2]).dtype == np.float64
+    out = np.empty((9, 6), dtype=np.float32)
+    close(k(*single[:2], z=single[2], out=out), k(*single[:2], z=single[2]))
+    e = k.indexed(x=[4, 2], z=[0, 1])
+    made = e(single[0], single[1][:2], z=single[2])
+    assert made.dtype == np.float32
+    np.testing.assert_array_equal(made, k(single[0][[4, 2]], single[1][:2], z=single[2][:2]))
 
 
 def test_wrong_shapes_name_function_and_argument(compiled):

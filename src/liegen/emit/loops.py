@@ -49,28 +49,38 @@ class Method:
 
 @dataclass(frozen=True)
 class Number:
-    """A type of number: its names in C and NumPy, NumPy's number for it, the suffix of its functions."""
+    """A type of number: its names in C and NumPy, NumPy's number for it."""
 
     type: str
     dtype: str
     code: int
-    suffix: str
 
 
-#: In the order in which NumPy tries them: it takes the first that all inputs can be cast to safely.
-NUMBERS = (Number("double", "float64", 12, ""),)
+#: In the order in which NumPy tries them: it takes the first that all inputs can be cast to safely. All of
+#: them are computed in double.
+NUMBERS = (Number("float", "float32", 11), Number("double", "float64", 12))
+#: Doubles in the arrays of a block, and the most elements in it.
+ROOM, MOST = 4096, 32
 
 
 @dataclass(frozen=True)
 class Loop:
-    """A loop over one type of number, as statements."""
+    """A loop over one type of number, as statements.
+
+    ``whole`` hands the arrays on as they are where they are ``steady``; ``arrays``, ``reads`` and ``writes``
+    go through packed copies of a block.
+    """
 
     name: str
     type: str
+    block: int
     spacings: tuple[str, ...]
     steady: str
     whole: tuple[str, ...]
-    single: tuple[str, ...]
+    arrays: tuple[str, ...]
+    reads: tuple[str, ...]
+    call: str
+    writes: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -154,83 +164,85 @@ def _operands(method: Method) -> tuple[_Operand, ...]:
     return tuple(made)
 
 
-def _array(o: _Operand, number: Number, package: str, data: str, step: str, spacing: str) -> str:
-    kind, index = ("out", "") if o.written else ("in", ", NULL")
-    return f"const {package}_{kind}{number.suffix} v{o.position} = {{{data}, {step}, {spacing}{index}}};"
-
-
-def _call(method: Method, number: Number, package: str, count: str) -> tuple[list[str], str]:
+def _call(method: Method, package: str, count: str, status: str) -> tuple[tuple[str, ...], str]:
     """A declaration for the outputs that are left out, if any, and the call."""
     names = [port.name for port in (*method.inputs, *method.outputs)]
     passed = [f"v{names.index(name)}" if name in names else "none" for name in method.taken]
-    declared = [f"const {package}_out{number.suffix} none = {{NULL, 0, 0}};"] if "none" in passed else []
-    function = f"{package}_{method.function}{number.suffix}"
-    return declared, f"{function}({', '.join([count, *passed, 'NULL'])});"
+    declared = (f"const {package}_out none = {{NULL, 0, 0}};",) if "none" in passed else ()
+    return declared, f"{package}_{method.function}({', '.join([count, *passed, status])});"
+
+
+def _structure(o: _Operand, package: str, data: str, step: str, spacing: str) -> str:
+    kind, index = ("out", "") if o.written else ("in", ", NULL")
+    return f"const {package}_{kind} v{o.position} = {{{data}, {step}, {spacing}{index}}};"
 
 
 def _loop(method: Method, number: Number, package: str) -> Loop:
     operands = _operands(method)
-    declared, whole_call = _call(method, number, package, "n")
-    _, single_call = _call(method, number, package, "1")
-    whole = [
-        _array(
-            o, number, package,
-            f"({'' if o.written else 'const '}{number.type} *)args[{o.position}]",
+    copied = _copied(operands, method, number, package)
+    if number.type != "double":
+        return copied
+    declared, call = _call(method, package, "n", "NULL")
+    given = [
+        _structure(
+            o, package, f"({'' if o.written else 'const '}double *)args[{o.position}]",
             f"steps[{o.position}] / size", f"c{o.position} / size",
         )
         for o in operands
     ]  # fmt: skip
-    return Loop(
-        name=f"{method.name}_{number.type}",
-        type=number.type,
+    return replace(
+        copied,
         spacings=tuple(
             f"const ptrdiff_t c{o.position} = "
             f"spacing({o.rows}, {o.columns}, {o.row_step}, {o.column_step}, size);"
             for o in operands
         ),
         steady=" && ".join(f"steady(c{o.position}, steps[{o.position}], size)" for o in operands),
-        whole=(*whole, *declared, whole_call),
-        single=(
-            *_local(operands, number, package),
-            *declared,
-            single_call,
-            *(_copy(o, written=True) for o in operands if o.written),
-        ),
+        whole=(*given, *declared, call),
     )
 
 
-def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
-    """The bits of the requirements that an element violates: what the batch function returns for it alone."""
-    value = replace(method, outputs=kernel.value.outputs)
-    inputs = len(method.inputs)
-    declared, call = _call(value, number, package, "1")
-    target = f"args[{inputs}] + k * steps[{inputs}]"
+def _copied(operands: Sequence[_Operand], method: Method, number: Number, package: str) -> Loop:
+    """The loop through packed copies alone."""
+    block = max(1, min(MOST, ROOM // sum(o.size for o in operands)))
+    declared, call = _call(method, package, "count", "NULL")
+    local = [
+        line
+        for o in operands
+        for line in (
+            f"double m{o.position}[{o.size * block}];",
+            _structure(o, package, f"m{o.position}", str(o.size), "1"),
+        )
+    ]
     return Loop(
         name=f"{method.name}_{number.type}",
         type=number.type,
+        block=block,
         spacings=(),
         steady="",
         whole=(),
-        single=(
-            *_local(_operands(value), number, package),
-            *declared,
-            f"const int status = {call}",
-            f"memcpy({target}, &status, sizeof status);",
-        ),
+        arrays=(*local, *declared),
+        reads=tuple(f"read_{number.type}(m{o.position}, {_place(o)});" for o in operands if not o.written),
+        call=call,
+        writes=tuple(f"write_{number.type}(m{o.position}, {_place(o)});" for o in operands if o.written),
     )
 
 
-def _local(operands: Sequence[_Operand], number: Number, package: str) -> list[str]:
-    """Local packed arrays of one element; those of inputs are filled."""
-    lines: list[str] = []
-    for o in operands:
-        lines.append(f"{number.type} m{o.position}[{o.size}];")
-        lines.append(_array(o, number, package, f"m{o.position}", str(o.size), "1"))
-    return [*lines, *(_copy(o, written=False) for o in operands if not o.written)]
+def _place(o: _Operand) -> str:
+    first = f"args[{o.position}] + k * steps[{o.position}], count, steps[{o.position}]"
+    return f"{first}, {o.rows}, {o.columns}, {o.row_step}, {o.column_step}"
 
 
-def _copy(o: _Operand, *, written: bool) -> str:
-    local = f"(char *)m{o.position}, {o.columns} * size, size"
-    array = f"args[{o.position}] + k * steps[{o.position}], {o.row_step}, {o.column_step}"
-    to, source = (array, local) if written else (local, array)
-    return f"move({to}, {source}, {o.rows}, {o.columns}, size);"
+def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -> Loop:
+    """The bits of the requirements that each element violates; the values are computed and dropped."""
+    value = replace(method, outputs=kernel.value.outputs)
+    copied = _copied(_operands(value), value, number, package)
+    _, call = _call(value, package, "count", "bits")
+    position = len(method.inputs)
+    return replace(
+        copied,
+        name=f"{method.name}_{number.type}",
+        arrays=(*copied.arrays, f"uint8_t bits[{copied.block}];"),
+        call=call,
+        writes=(f"write_status(bits, args[{position}] + k * steps[{position}], count, steps[{position}]);",),
+    )

@@ -56,14 +56,15 @@ def opened(folder: Path) -> Path:
         with suppress(FileExistsError):
             folder.mkdir(mode=0o700)
         status = folder.lstat()
+        parents = [(parent, parent.stat()) for parent in folder.resolve().parents]
     except OSError as error:
         raise Refused(f"cannot make the folder {folder}: {error.strerror}") from error
     if not stat.S_ISDIR(status.st_mode):
         raise Refused(f"{folder} is a link or a file, not a folder; remove it")
     if os.name == "posix":
         _check_owner(folder, status)
-        for parent in folder.resolve().parents:
-            _check_parent(parent, parent.stat())
+        for parent, found in parents:
+            _check_parent(parent, found)
     return folder
 
 

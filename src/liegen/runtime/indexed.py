@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from liegen.emit.loops import NUMBERS, Method, Number
+from liegen.emit.loops import Method
 from liegen.program import Port
 
 from .calls import Evaluate
@@ -129,14 +129,14 @@ def _leading(method: Method, port: Port, array: Array, length: int) -> bool:
 
 def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> Evaluate:
     """A method through the C function of batches; the interpreter's lock is released while it runs."""
-    functions = {np.dtype(n.dtype): _function(library, method, n) for n in NUMBERS}
+    function = _function(library, method)
     n = indices.length
     order = [port.name for port in (*method.inputs, *method.outputs)]
     places = [order.index(name) if name in order else None for name in method.taken]
 
     def evaluate(*arrays: Any, out: Any = None) -> Any:
         values = [np.asarray(array) for array in arrays]
-        dtype = number(values)
+        final, dtype = number(values), np.dtype(np.float64)
         inputs = [_cast(method, port, v, dtype) for port, v in zip(method.inputs, values, strict=True)]
         passed: list[Any] = [
             _input(method, port, v, indices) for port, v in zip(method.inputs, inputs, strict=True)
@@ -147,14 +147,14 @@ def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> E
             made = target if _direct(target, shape, dtype, inputs) else np.empty(shape, dtype)
             passed.append(_Out(made.ctypes.data, *steps(made, port.shape)))
             results.append(made)
-        functions[dtype](n, *(_Out(None, 0, 0) if p is None else passed[p] for p in places), None)
-        return handed(results, dtype, out)
+        function(n, *(_Out(None, 0, 0) if p is None else passed[p] for p in places), None)
+        return handed(results, final, out)
 
     return evaluate
 
 
-def _function(library: ctypes.CDLL, method: Method, kind: Number) -> Callable[..., int]:
-    function = library[f"{PACKAGE}_{method.function}{kind.suffix}"]
+def _function(library: ctypes.CDLL, method: Method) -> Callable[..., int]:
+    function = library[f"{PACKAGE}_{method.function}"]
     inputs, total = len(method.inputs), len(method.taken)
     function.argtypes = [ctypes.c_ssize_t, *[_In] * inputs, *[_Out] * (total - inputs), ctypes.c_void_p]
     function.restype = ctypes.c_int

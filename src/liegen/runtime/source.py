@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 
 from liegen.emit import render
@@ -53,6 +53,10 @@ class Source:
     def digest(self) -> str:
         """SHA-256 of all of it; two sources of one digest are equal."""
         return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+
+    def __getstate__(self) -> dict[str, object]:
+        """Without the digest: who restores a source works it out anew."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Source) and self.digest == other.digest
