@@ -12,6 +12,7 @@ from .variant import AnyFunction, Maker, Task
 #: Every function with definitions that peers publish, in the order of tables.
 PUBLISHED: tuple[AnyFunction, ...] = (
     between_se3,
+    between_se3.whitened("full", name="between_se3_whitened"),
     between_so3,
     between_se2,
     formulas.between_so3xr3,

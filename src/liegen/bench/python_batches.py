@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -25,7 +26,7 @@ SIZES = (1_000, 10_000)
 
 @dataclass(frozen=True)
 class BatchRow:
-    """Nanoseconds a factor of one way, and how many times liegen's this is (median of rounds)."""
+    """Nanoseconds a factor by the wall clock, as jax uses all cores, and the median ratio to liegen's."""
 
     n: int
     what: str
@@ -56,7 +57,7 @@ def compare_batches(
         x, y, z = (np.ascontiguousarray(drawn[:n, k : k + 7]) for k in (0, 7, 14))
         results = [way(x, y, z) for way in ways.values()]
         ordered = [results[0], *(jaxlie_vmap.in_order(*r) for r in results[1:])]
-        times = in_turn([partial(way, x, y, z) for way in ways.values()], n, rounds)
+        times = in_turn([partial(way, x, y, z) for way in ways.values()], n, rounds, time.perf_counter_ns)
         found += [
             BatchRow(
                 n, what, min(ns), statistics.median(ns),

@@ -39,6 +39,13 @@ def between_so3xr3(x: Sequence[E], y: Sequence[E], z: Sequence[E]) -> Sequence[E
     return [_sf().V3(rotation), x[0].inverse() * (y[1] - x[1]) - z[1]]
 
 
+def between_se3_whitened(x: E, y: E, z: E, sqrt_info: E) -> Sequence[E]:
+    """S r with an upper triangular S."""
+    sf = _sf()
+    rows = [[sqrt_info[6 * i + j] if j >= i else 0 for j in range(6)] for i in range(6)]
+    return [sf.V6(sf.M66(rows) * between_se3(x, y, z)[0])]
+
+
 def prior_se3(x: E, z: E) -> Sequence[E]:
     """Log(z^-1 x)."""
     return [_sf().V6(z.local_coordinates(x))]
@@ -96,7 +103,8 @@ def rolling_shutter(R: E, p: E, C: E, c: E, w: E, v: E, P: E, t: E, K: E, D: E) 
 FORMULAS: Mapping[str, Callable[..., Sequence[E]]] = {
     f.__name__: f
     for f in (
-        between_se3, between_so3, between_se2, between_so3xr3, prior_se3, reprojection_bal,
-        bearing_range_se2_r2, quaternion_local, quaternion_interpolation, imu_step, rolling_shutter,
+        between_se3, between_se3_whitened, between_so3, between_se2, between_so3xr3, prior_se3,
+        reprojection_bal, bearing_range_se2_r2, quaternion_local, quaternion_interpolation,
+        imu_step, rolling_shutter,
     )
 }  # fmt: skip

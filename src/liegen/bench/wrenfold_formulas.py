@@ -56,6 +56,13 @@ def between_se3(x: V, y: V, z: V) -> V:
     return _log_se3(z, *_between(x, y))
 
 
+def between_se3_whitened(x: V, y: V, z: V, sqrt_info: V) -> V:
+    """S r with an upper triangular S."""
+    sym = _sym()
+    rows = [[sqrt_info[6 * i + j] if j >= i else 0 for j in range(6)] for i in range(6)]
+    return sym.matrix(rows) * between_se3(x, y, z)
+
+
 def prior_se3(x: V, z: V) -> V:
     """Log(z^-1 x)."""
     return _log_se3(z, _quaternion(x[0:4]), x[4:7])
@@ -141,7 +148,8 @@ def rolling_shutter(R: V, p: V, C: V, c: V, w: V, v: V, P: V, t: V, K: V, D: V) 
 FORMULAS: Mapping[str, Callable[..., V]] = {
     f.__name__: f
     for f in (
-        between_se3, between_so3, between_se2, between_so3xr3, prior_se3, reprojection_bal,
-        bearing_range_se2_r2, quaternion_local, quaternion_interpolation, imu_step, rolling_shutter,
+        between_se3, between_se3_whitened, between_so3, between_se2, between_so3xr3, prior_se3,
+        reprojection_bal, bearing_range_se2_r2, quaternion_local, quaternion_interpolation,
+        imu_step, rolling_shutter,
     )
 }  # fmt: skip

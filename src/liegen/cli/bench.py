@@ -135,12 +135,12 @@ def _peers(
         click.echo()
         for result in results:
             click.echo(report.verdict(result))
-        click.echo("\nFrom Python, between_se3 with both Jacobians:")
+        click.echo("\nFrom Python, between_se3 with both Jacobians, wall clock:")
         table(report.BATCH_TITLES, report.batch_rows(batches, missing), right=range(2, 6))
         flags = "; ".join(f"{name}: {' '.join(FLAGS[name])}" for name in plan.flags)
         click.echo(
             f"\n{compiler_version()}; {flags}\n{calls} distinct inputs, {rounds} rounds in turn; "
-            "ratio: median over rounds of the time over liegen's with plain flags; small: near a solution"
+            "processor time; ratio: median of the time over liegen's with plain flags; small: near a solution"
         )
     content = report.as_json(results, plan, compiler_version())
     named = {"batches": [asdict(b) for b in batches], "missing": [asdict(m) for m in missing]}
@@ -214,5 +214,5 @@ def _growth(as_json: bool, *, rounds: int, **_: Any) -> dict[str, Any]:
                 f"over the larger half: seconds ~ size^{g.by_size:.2f} ~ operations^{g.by_operations:.2f}\n"
             )
         rows = [(c.what, "missing" if c.seconds is None else f"{c.seconds:.2f}") for c in cold]
-        table(("a new process", "seconds"), rows, right=(1,))
+        table(("a new process", "processor s"), rows, right=(1,))
     return {"growth": [asdict(g) for g in found], "cold": [asdict(c) for c in cold]}

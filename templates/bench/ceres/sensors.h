@@ -2,6 +2,17 @@
 #pragma once
 #include "pose.h"
 
+template <class T>
+void between_se3_whitened(const T *x, const T *y, const double *z, const double *S, T *out)
+{
+    T error[6];
+    between_se3(x, y, z, error);
+    for (int i = 0; i < 6; i++) {
+        out[i] = S[7 * i] * error[i];
+        for (int j = i + 1; j < 6; j++) out[i] += S[6 * i + j] * error[j];
+    }
+}
+
 template <class T> void between_se2(const T *x, const T *y, const double *z, T *out)
 {
     const T c = x[0] * y[0] + x[1] * y[1], s = x[0] * y[1] - x[1] * y[0], p = y[2] - x[2], q = y[3] - x[3];
