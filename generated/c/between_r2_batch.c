@@ -68,6 +68,9 @@ int liegen_factors_between_r2_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen res_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_y_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -77,7 +80,7 @@ int liegen_factors_between_r2_batch(
             lanes res_lanes[2];
             lanes res_D_x_lanes[4];
             lanes res_D_y_lanes[4];
-            lanes room[4];
+            lanes room[LANES_ROOM(4)];
             liegen_factors_load(x, 2, k, count, x_lanes);
             liegen_factors_load(y, 2, k, count, y_lanes);
             liegen_factors_load(z, 2, k, count, z_lanes);
@@ -86,12 +89,15 @@ int liegen_factors_between_r2_batch(
             else
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_factors_store(res, 2, k, count, res_lanes, room, stream);
+            liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {
-                liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream);
-                liegen_factors_store(res_D_y, 4, k, count, res_D_y_lanes, room, stream);
+                liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+                liegen_factors_store(res_D_y, 4, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
             }
         }
+        lanes_lift(&res_pen);
+        lanes_lift(&res_D_x_pen);
+        lanes_lift(&res_D_y_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -176,6 +176,9 @@ int liegen_factors_between_so3_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen res_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_y_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -185,7 +188,7 @@ int liegen_factors_between_so3_batch(
             lanes res_lanes[3];
             lanes res_D_x_lanes[9];
             lanes res_D_y_lanes[9];
-            lanes room[9];
+            lanes room[LANES_ROOM(9)];
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(y, 4, k, count, y_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
@@ -194,12 +197,15 @@ int liegen_factors_between_so3_batch(
             else
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_factors_store(res, 3, k, count, res_lanes, room, stream);
+            liegen_factors_store(res, 3, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {
-                liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream);
-                liegen_factors_store(res_D_y, 9, k, count, res_D_y_lanes, room, stream);
+                liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+                liegen_factors_store(res_D_y, 9, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
             }
         }
+        lanes_lift(&res_pen);
+        lanes_lift(&res_D_x_pen);
+        lanes_lift(&res_D_y_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -73,15 +73,15 @@ static inline lanes lanes_select(lanes_mask m, lanes a, lanes b)
 #endif
 
 /* What vectors of the compiler lack, by machine. */
-#if LANES == 8 && defined(__AVX512F__)
+#if LANES == 8 && defined(__AVX512F__) && defined(__x86_64__)
 #include <immintrin.h>
 #define LANES_STREAM(to, from) _mm512_stream_pd(to, _mm512_loadu_pd(from))
 static inline lanes lanes_sqrt(lanes x) { return (lanes)_mm512_sqrt_pd((__m512d)x); }
-#elif LANES == 4 && defined(__AVX__)
+#elif LANES == 4 && defined(__AVX__) && defined(__x86_64__)
 #include <immintrin.h>
 #define LANES_STREAM(to, from) _mm256_stream_pd(to, _mm256_loadu_pd(from))
 static inline lanes lanes_sqrt(lanes x) { return (lanes)_mm256_sqrt_pd((__m256d)x); }
-#elif LANES == 2 && defined(__SSE2__)
+#elif LANES == 2 && defined(__SSE2__) && defined(__x86_64__)
 #include <emmintrin.h>
 #define LANES_STREAM(to, from) _mm_stream_pd(to, _mm_loadu_pd(from))
 static inline lanes lanes_sqrt(lanes x) { return (lanes)_mm_sqrt_pd((__m128d)x); }
@@ -207,7 +207,8 @@ static inline void lanes_sincos(lanes x, lanes *s, lanes *c)
     const lanes sine = u + (u * (z * (sin_even + z * sin_odd)) + v * one);
     const lanes cosine = one + (((1.0 - one) - half) + (zz * (cos_even + z * cos_odd) - u * v));
     const lanes_mask odd = (k & 1) != 0;
-    *s = lanes_signed(lanes_of_bits(lanes_to_bits(lanes_select(odd, cosine, sine)) ^ (-((k >> 1) & 1) & LANES_SIGN)), x);
+    const lanes_bits turned = lanes_to_bits(lanes_select(odd, cosine, sine)) ^ (-((k >> 1) & 1) & LANES_SIGN);
+    *s = lanes_signed(lanes_of_bits(turned), x);
     *c = lanes_of_bits(lanes_to_bits(lanes_select(odd, sine, cosine)) ^ (-(((k + 1) >> 1) & 1) & LANES_SIGN));
     if (lanes_any(lanes_not(a <= LANES_FAR))) lanes_sincos_far(&x, s, c);
 }
@@ -303,23 +304,43 @@ static inline int lanes_streams(ptrdiff_t n, int size)
     return n > LIEGEN_FACTORS_STREAM_BYTES / (ptrdiff_t)sizeof(double) / size;
 }
 
-/* Whole lines of 64 bytes past the caches, what remains at both ends through them. */
-static inline void lanes_copy(double *to, const double *from, ptrdiff_t size, int stream)
+/* An output in whole lines of 64 bytes: a begun line waits here for the next block. */
+#define LANES_ROOM(size) (16 / LANES + (size))
+typedef struct {
+    double kept[8];
+    double *to;
+    ptrdiff_t held;
+} lanes_pen;
+
+/* Where in its line a number lies. */
+static inline ptrdiff_t lanes_phase(const double *to)
 {
-#ifdef LANES_STREAM
-    const uintptr_t past = (uintptr_t)to % 64;
-    if (stream && past % sizeof(double) == 0) {
-        const ptrdiff_t first = past == 0 ? 0 : (ptrdiff_t)((64 - past) / sizeof(double));
-        ptrdiff_t i = first < size ? first : size;
-        memcpy(to, from, sizeof(double) * (size_t)i);
-        for (; i + 8 <= size; i += 8)
-            for (int j = 0; j < 8; j += LANES) LANES_STREAM(to + i + j, from + i + j);
-        memcpy(to + i, from + i, sizeof(double) * (size_t)(size - i));
-        return;
+    return (ptrdiff_t)((uintptr_t)to % 64 / sizeof(double));
+}
+
+/* Writes the begun line. */
+static inline void lanes_lift(lanes_pen *pen)
+{
+    for (ptrdiff_t k = 0; k < pen->held; ++k) (pen->to - pen->held)[k] = pen->kept[k];
+    pen->held = 0;
+    pen->to = NULL;
+}
+
+/* Lines from[0 ..]; the numbers from[phase .. end - 1] are new, and belong to line + phase. */
+static inline void lanes_write(lanes_pen *pen, double *line, const double *from, ptrdiff_t phase, ptrdiff_t end)
+{
+    ptrdiff_t k = 0;
+    if (pen->to != line + phase) {
+        lanes_lift(pen);
+        for (k = phase; k % 8 != 0 && k < end; ++k) line[k] = from[k];
     }
+#ifdef LANES_STREAM
+    for (; k + 8 <= end; k += 8)
+        for (int j = 0; j < 8; j += LANES) LANES_STREAM(line + k + j, from + k + j);
 #endif
-    (void)stream;
-    memcpy(to, from, sizeof(double) * (size_t)size);
+    memcpy(pen->kept, from + k, sizeof pen->kept);
+    pen->held = end - k;
+    pen->to = k % 8 == 0 ? line + end : NULL;
 }
 
 /* Another thread may read what was written once this is done. */
@@ -462,34 +483,36 @@ static inline void liegen_factors_load(liegen_factors_in in, int size, ptrdiff_t
 #endif
 }
 
-/* To factors k .. k + count - 1. room: as many lanes as size. stream: past the caches. */
+/* To factors k .. k + count - 1. room: LANES_ROOM(size) lanes. pen: NULL, or to write past the caches. */
 static inline void liegen_factors_store(
-    liegen_factors_out out, int size, ptrdiff_t k, int count, const lanes *from, lanes *room, int stream)
+    liegen_factors_out out, int size, ptrdiff_t k, int count, const lanes *from, lanes *room, lanes_pen *pen)
 {
     double *to = out.data + k * out.stride;
     if (out.data == NULL) return;
 #if LANES > 1
     if (out.stride == 1 && count == LANES) {
-        for (int c = 0; c < size; ++c) lanes_copy(to + c * out.comp, (const double *)(from + c), LANES, stream);
+        for (int c = 0; c < size; ++c) memcpy(to + c * out.comp, from + c, sizeof *from);
         return;
     }
     if (out.comp == 1 && size >= LANES_ROW) {
-        const int direct = count == LANES && !(stream && out.stride == size);
-        double *rows = direct ? to : (double *)room;
+        const int past = pen != NULL && out.stride == size && (uintptr_t)to % sizeof(double) == 0;
+        const int direct = count == LANES && !past;
+        const ptrdiff_t phase = past ? lanes_phase(to) : 0;
+        double *rows = direct ? to : (double *)room + phase;
         const ptrdiff_t stride = direct ? out.stride : size;
+        if (past && pen->to == to) memcpy(room, pen->kept, sizeof pen->kept);
         for (int c = 0; c < size - LANES_ROW; c += LANES_ROW) lanes_to_rows(rows + c, stride, from + c);
         lanes_to_rows(rows + size - LANES_ROW, stride, from + size - LANES_ROW);
-        if (direct) return;
-        if (out.stride == size) {
-            lanes_copy(to, rows, (ptrdiff_t)count * size, stream);
-        } else {
-            for (int j = 0; j < count; ++j) memcpy(to + j * out.stride, rows + j * stride, sizeof(double) * size);
-        }
+        if (past)
+            lanes_write(pen, to - phase, (const double *)room, phase, phase + (ptrdiff_t)count * size);
+        else
+            for (int j = 0; j < count && !direct; ++j)
+                memcpy(to + j * out.stride, rows + j * stride, sizeof(double) * (size_t)size);
         return;
     }
 #endif
     (void)room;
-    (void)stream;
+    (void)pen;
     for (int j = 0; j < count; ++j)
         for (int c = 0; c < size; ++c) to[j * out.stride + c * out.comp] = ((const double *)(from + c))[j];
 }

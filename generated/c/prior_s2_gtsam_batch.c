@@ -138,6 +138,8 @@ int liegen_factors_prior_s2_gtsam_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen res_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_x_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -145,7 +147,7 @@ int liegen_factors_prior_s2_gtsam_batch(
             lanes z_lanes[3];
             lanes res_lanes[2];
             lanes res_D_x_lanes[4];
-            lanes room[4];
+            lanes room[LANES_ROOM(4)];
             liegen_factors_load(x, 3, k, count, x_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians)
@@ -153,11 +155,13 @@ int liegen_factors_prior_s2_gtsam_batch(
             else
                 block_value(x_lanes, z_lanes, res_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_factors_store(res, 2, k, count, res_lanes, room, stream);
+            liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {
-                liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream);
+                liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
             }
         }
+        lanes_lift(&res_pen);
+        lanes_lift(&res_D_x_pen);
         lanes_finish(stream);
     }
     return violated;

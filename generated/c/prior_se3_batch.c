@@ -224,6 +224,8 @@ int liegen_factors_prior_se3_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen res_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_x_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -231,7 +233,7 @@ int liegen_factors_prior_se3_batch(
             lanes z_lanes[7];
             lanes res_lanes[6];
             lanes res_D_x_lanes[36];
-            lanes room[36];
+            lanes room[LANES_ROOM(36)];
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(z, 7, k, count, z_lanes);
             if (jacobians)
@@ -239,11 +241,13 @@ int liegen_factors_prior_se3_batch(
             else
                 block_value(x_lanes, z_lanes, res_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_factors_store(res, 6, k, count, res_lanes, room, stream);
+            liegen_factors_store(res, 6, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {
-                liegen_factors_store(res_D_x, 36, k, count, res_D_x_lanes, room, stream);
+                liegen_factors_store(res_D_x, 36, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
             }
         }
+        lanes_lift(&res_pen);
+        lanes_lift(&res_D_x_pen);
         lanes_finish(stream);
     }
     return violated;

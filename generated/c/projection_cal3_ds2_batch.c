@@ -204,6 +204,9 @@ int liegen_factors_projection_cal3_ds2_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen res_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_p_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -214,7 +217,7 @@ int liegen_factors_projection_cal3_ds2_batch(
             lanes res_lanes[2];
             lanes res_D_x_lanes[12];
             lanes res_D_p_lanes[6];
-            lanes room[12];
+            lanes room[LANES_ROOM(12)];
             lanes_mask held[1];
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(p, 3, k, count, p_lanes);
@@ -233,12 +236,15 @@ int liegen_factors_projection_cal3_ds2_batch(
                 lanes_blank(res_D_x_lanes, 12, held, 1);
                 lanes_blank(res_D_p_lanes, 6, held, 1);
             }
-            liegen_factors_store(res, 2, k, count, res_lanes, room, stream);
+            liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream);
-                liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream);
+                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+                liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
             }
         }
+        lanes_lift(&res_pen);
+        lanes_lift(&res_D_x_pen);
+        lanes_lift(&res_D_p_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -88,6 +88,9 @@ int liegen_factors_range_se2_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen res_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen res_D_y_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -97,7 +100,7 @@ int liegen_factors_range_se2_batch(
             lanes res_lanes[1];
             lanes res_D_x_lanes[3];
             lanes res_D_y_lanes[3];
-            lanes room[3];
+            lanes room[LANES_ROOM(3)];
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(y, 4, k, count, y_lanes);
             liegen_factors_load(z, 1, k, count, z_lanes);
@@ -106,12 +109,15 @@ int liegen_factors_range_se2_batch(
             else
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_factors_store(res, 1, k, count, res_lanes, room, stream);
+            liegen_factors_store(res, 1, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {
-                liegen_factors_store(res_D_x, 3, k, count, res_D_x_lanes, room, stream);
-                liegen_factors_store(res_D_y, 3, k, count, res_D_y_lanes, room, stream);
+                liegen_factors_store(res_D_x, 3, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+                liegen_factors_store(res_D_y, 3, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
             }
         }
+        lanes_lift(&res_pen);
+        lanes_lift(&res_D_x_pen);
+        lanes_lift(&res_D_y_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -162,17 +162,19 @@ int liegen_groups_gal3_adjoint_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
             lanes x_lanes[11];
             lanes out_lanes[100];
-            lanes room[100];
+            lanes room[LANES_ROOM(100)];
             liegen_groups_load(x, 11, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 100, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 100, k, count, out_lanes, room, stream ? &out_pen : NULL);
         }
+        lanes_lift(&out_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -93,6 +93,9 @@ int liegen_groups_se2_between_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_y_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -101,7 +104,7 @@ int liegen_groups_se2_between_batch(
             lanes out_lanes[4];
             lanes out_D_x_lanes[9];
             lanes out_D_y_lanes[9];
-            lanes room[9];
+            lanes room[LANES_ROOM(9)];
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(y, 4, k, count, y_lanes);
             if (jacobians)
@@ -109,12 +112,15 @@ int liegen_groups_se2_between_batch(
             else
                 block_value(x_lanes, y_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 4, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream);
-                liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream);
+                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+                liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
             }
         }
+        lanes_lift(&out_pen);
+        lanes_lift(&out_D_x_pen);
+        lanes_lift(&out_D_y_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -64,24 +64,28 @@ int liegen_groups_se2_inverse_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_x_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
             lanes x_lanes[4];
             lanes out_lanes[4];
             lanes out_D_x_lanes[9];
-            lanes room[9];
+            lanes room[LANES_ROOM(9)];
             liegen_groups_load(x, 4, k, count, x_lanes);
             if (jacobians)
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
             else
                 block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 4, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream);
+                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
             }
         }
+        lanes_lift(&out_pen);
+        lanes_lift(&out_D_x_pen);
         lanes_finish(stream);
     }
     return violated;

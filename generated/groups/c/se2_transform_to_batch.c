@@ -73,6 +73,9 @@ int liegen_groups_se2_transform_to_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_p_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -81,7 +84,7 @@ int liegen_groups_se2_transform_to_batch(
             lanes out_lanes[2];
             lanes out_D_x_lanes[6];
             lanes out_D_p_lanes[4];
-            lanes room[6];
+            lanes room[LANES_ROOM(6)];
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(p, 2, k, count, p_lanes);
             if (jacobians)
@@ -89,12 +92,15 @@ int liegen_groups_se2_transform_to_batch(
             else
                 block_value(x_lanes, p_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 2, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {
-                liegen_groups_store(out_D_x, 6, k, count, out_D_x_lanes, room, stream);
-                liegen_groups_store(out_D_p, 4, k, count, out_D_p_lanes, room, stream);
+                liegen_groups_store(out_D_x, 6, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+                liegen_groups_store(out_D_p, 4, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
             }
         }
+        lanes_lift(&out_pen);
+        lanes_lift(&out_D_x_pen);
+        lanes_lift(&out_D_p_pen);
         lanes_finish(stream);
     }
     return violated;

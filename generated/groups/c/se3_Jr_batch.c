@@ -125,17 +125,19 @@ int liegen_groups_se3_Jr_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
             lanes d_lanes[6];
             lanes out_lanes[36];
-            lanes room[36];
+            lanes room[LANES_ROOM(36)];
             liegen_groups_load(d, 6, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 36, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 36, k, count, out_lanes, room, stream ? &out_pen : NULL);
         }
+        lanes_lift(&out_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -128,17 +128,19 @@ int liegen_groups_sim2_Jl_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
             lanes d_lanes[4];
             lanes out_lanes[16];
-            lanes room[16];
+            lanes room[LANES_ROOM(16)];
             liegen_groups_load(d, 4, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 16, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 16, k, count, out_lanes, room, stream ? &out_pen : NULL);
         }
+        lanes_lift(&out_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -209,17 +209,19 @@ int liegen_groups_sim3_Jl_inv_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
             lanes d_lanes[7];
             lanes out_lanes[49];
-            lanes room[49];
+            lanes room[LANES_ROOM(49)];
             liegen_groups_load(d, 7, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 49, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 49, k, count, out_lanes, room, stream ? &out_pen : NULL);
         }
+        lanes_lift(&out_pen);
         lanes_finish(stream);
     }
     return violated;

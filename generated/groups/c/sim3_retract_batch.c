@@ -458,6 +458,9 @@ int liegen_groups_sim3_retract_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_d_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -466,7 +469,7 @@ int liegen_groups_sim3_retract_batch(
             lanes out_lanes[8];
             lanes out_D_x_lanes[49];
             lanes out_D_d_lanes[49];
-            lanes room[49];
+            lanes room[LANES_ROOM(49)];
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(d, 7, k, count, d_lanes);
             if (jacobians)
@@ -474,12 +477,15 @@ int liegen_groups_sim3_retract_batch(
             else
                 block_value(x_lanes, d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 8, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 8, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {
-                liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream);
-                liegen_groups_store(out_D_d, 49, k, count, out_D_d_lanes, room, stream);
+                liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+                liegen_groups_store(out_D_d, 49, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
             }
         }
+        lanes_lift(&out_pen);
+        lanes_lift(&out_D_x_pen);
+        lanes_lift(&out_D_d_pen);
         lanes_finish(stream);
     }
     return violated;

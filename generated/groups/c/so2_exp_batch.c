@@ -45,24 +45,28 @@ int liegen_groups_so2_exp_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_d_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
             lanes d_lanes[1];
             lanes out_lanes[2];
             lanes out_D_d_lanes[1];
-            lanes room[2];
+            lanes room[LANES_ROOM(2)];
             liegen_groups_load(d, 1, k, count, d_lanes);
             if (jacobians)
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
             else
                 block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 2, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {
-                liegen_groups_store(out_D_d, 1, k, count, out_D_d_lanes, room, stream);
+                liegen_groups_store(out_D_d, 1, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
             }
         }
+        lanes_lift(&out_pen);
+        lanes_lift(&out_D_d_pen);
         lanes_finish(stream);
     }
     return violated;

@@ -113,6 +113,9 @@ int liegen_groups_so3_act_batch(
     int violated = 0;
     LANES_PARALLEL(violated)
     {
+        lanes_pen out_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_x_pen = { { 0.0 }, NULL, 0 };
+        lanes_pen out_D_p_pen = { { 0.0 }, NULL, 0 };
         LANES_SHARED
         for (ptrdiff_t k = 0; k < n; k += LANES) {
             const int count = n - k < LANES ? (int)(n - k) : LANES;
@@ -121,7 +124,7 @@ int liegen_groups_so3_act_batch(
             lanes out_lanes[3];
             lanes out_D_x_lanes[9];
             lanes out_D_p_lanes[9];
-            lanes room[9];
+            lanes room[LANES_ROOM(9)];
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians)
@@ -129,12 +132,15 @@ int liegen_groups_so3_act_batch(
             else
                 block_value(x_lanes, p_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);
-            liegen_groups_store(out, 3, k, count, out_lanes, room, stream);
+            liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream);
-                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream);
+                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
             }
         }
+        lanes_lift(&out_pen);
+        lanes_lift(&out_D_x_pen);
+        lanes_lift(&out_D_p_pen);
         lanes_finish(stream);
     }
     return violated;
