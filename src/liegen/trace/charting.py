@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from liegen.charts import GTSAM, Chart, Preset, form_chart, preset
+from liegen.charts import GTSAM, Chart, Preset, form_chart, has_charts, preset
 from liegen.errors import DefinitionError
 from liegen.manifolds import Node, Operation
-from liegen.manifolds.form import PoseForm, RotationForm
 
 from .frame_report import FrameReport
 from .graph import Graph, Parameter
@@ -55,10 +54,10 @@ def _refuse_other(name: str, variables: Mapping[str, Parameter], what: str) -> N
             f"{what}: chart={{{name!r}: ...}} names no variable; there are {', '.join(variables)}"
         )
     form = variables[name].manifold.form
-    if not isinstance(form, RotationForm | PoseForm):
+    if not has_charts(form):
         raise DefinitionError(
             f"{what}: {name!r} is {form.name}, which has only its own chart; charts exist for SO2, SE2, "
-            "SO3 and SE3"
+            "SO3, SE3 and products of these"
         )
 
 
