@@ -74,7 +74,7 @@ def test_a_variable_that_is_a_product_has_a_chart_of_its_own():
 def test_an_output_on_a_product_has_rows_in_the_chart(name):
     """Rows and columns of a part that only passes are in one chart: the identity."""
     x = drawn(Pair, 1)
-    D = moved.in_chart(name).jacobians(x, v=[1, 2, 3])["out_D_x"]
+    D = moved.in_chart(name).jacobians(x, v=R3(1, 2, 3))["out_D_x"]
     np.testing.assert_allclose(D, np.eye(12), rtol=0, atol=1e-14)
 
 
