@@ -46,6 +46,8 @@
 #ifndef LIEGEN_FACTORS_PROJECTION_CAL3_BUNDLER_H
 #define LIEGEN_FACTORS_PROJECTION_CAL3_BUNDLER_H
 
+#include "liegen_factors_batch.h"
+
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
 #define LIEGEN_FACTORS_RESTRICT restrict
@@ -88,6 +90,18 @@ int liegen_factors_projection_cal3_bundler(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_p);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_projection_cal3_bundler_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in p,
+    liegen_factors_in K,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_p,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

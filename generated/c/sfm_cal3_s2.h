@@ -47,6 +47,8 @@
 #ifndef LIEGEN_FACTORS_SFM_CAL3_S2_H
 #define LIEGEN_FACTORS_SFM_CAL3_S2_H
 
+#include "liegen_factors_batch.h"
+
 #ifndef LIEGEN_FACTORS_RESTRICT
 #if defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
 #define LIEGEN_FACTORS_RESTRICT restrict
@@ -91,6 +93,19 @@ int liegen_factors_sfm_cal3_s2(
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_p,
     double *LIEGEN_FACTORS_RESTRICT res_D_K);
+
+/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_factors_sfm_cal3_s2_batch(
+    ptrdiff_t n,
+    liegen_factors_in x,
+    liegen_factors_in p,
+    liegen_factors_in K,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_p,
+    liegen_factors_out res_D_K,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

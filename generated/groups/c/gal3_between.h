@@ -30,6 +30,8 @@
 #ifndef LIEGEN_GROUPS_GAL3_BETWEEN_H
 #define LIEGEN_GROUPS_GAL3_BETWEEN_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -57,6 +59,16 @@ int liegen_groups_gal3_between(
     double *out,
     double *out_D_x,
     double *out_D_y);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_gal3_between_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

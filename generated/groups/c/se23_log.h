@@ -27,6 +27,8 @@
 #ifndef LIEGEN_GROUPS_SE23_LOG_H
 #define LIEGEN_GROUPS_SE23_LOG_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -49,6 +51,14 @@ int liegen_groups_se23_log(
     const double *x,
     double *out,
     double *out_D_x);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_se23_log_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -31,6 +31,8 @@
 #ifndef LIEGEN_GROUPS_SE23_RETRACT_H
 #define LIEGEN_GROUPS_SE23_RETRACT_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -58,6 +60,16 @@ int liegen_groups_se23_retract(
     double *out,
     double *out_D_x,
     double *out_D_d);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_se23_retract_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

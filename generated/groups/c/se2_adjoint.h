@@ -22,6 +22,8 @@
 #ifndef LIEGEN_GROUPS_SE2_ADJOINT_H
 #define LIEGEN_GROUPS_SE2_ADJOINT_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -37,6 +39,13 @@ extern "C" {
 int liegen_groups_se2_adjoint(
     const double *x,
     double *out);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_se2_adjoint_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

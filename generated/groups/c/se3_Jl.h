@@ -24,6 +24,8 @@
 #ifndef LIEGEN_GROUPS_SE3_JL_H
 #define LIEGEN_GROUPS_SE3_JL_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -39,6 +41,13 @@ extern "C" {
 int liegen_groups_se3_Jl(
     const double *d,
     double *out);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_se3_Jl_batch(
+    ptrdiff_t n,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

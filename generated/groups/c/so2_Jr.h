@@ -23,6 +23,8 @@
 #ifndef LIEGEN_GROUPS_SO2_JR_H
 #define LIEGEN_GROUPS_SO2_JR_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -38,6 +40,13 @@ extern "C" {
 int liegen_groups_so2_Jr(
     const double *d,
     double *out);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_so2_Jr_batch(
+    ptrdiff_t n,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

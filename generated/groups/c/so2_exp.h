@@ -27,6 +27,8 @@
 #ifndef LIEGEN_GROUPS_SO2_EXP_H
 #define LIEGEN_GROUPS_SO2_EXP_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -49,6 +51,14 @@ int liegen_groups_so2_exp(
     const double *d,
     double *out,
     double *out_D_d);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_so2_exp_batch(
+    ptrdiff_t n,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -30,6 +30,8 @@
 #ifndef LIEGEN_GROUPS_SO3_ACT_H
 #define LIEGEN_GROUPS_SO3_ACT_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -57,6 +59,16 @@ int liegen_groups_so3_act(
     double *out,
     double *out_D_x,
     double *out_D_p);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_so3_act_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in p,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_p,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }

@@ -29,6 +29,8 @@
 #ifndef LIEGEN_GROUPS_SO3_LOCAL_H
 #define LIEGEN_GROUPS_SO3_LOCAL_H
 
+#include "liegen_groups_batch.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -56,6 +58,16 @@ int liegen_groups_so3_local(
     double *out,
     double *out_D_x,
     double *out_D_y);
+
+/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+int liegen_groups_so3_local_batch(
+    ptrdiff_t n,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y,
+    uint8_t *status);
 
 #ifdef __cplusplus
 }
