@@ -181,9 +181,8 @@ def _machinery(file: str) -> bool:
 
 def _generated(frame: FrameType) -> bool:
     """Whether it is a method that ``dataclasses`` wrote for a class of liegen."""
-    return frame.f_code.co_filename == "<string>" and str(frame.f_globals.get("__name__")).startswith(
-        "liegen."
-    )
+    module = str(frame.f_globals.get("__name__"))
+    return frame.f_code.co_filename == "<string>" and module.startswith("liegen.")
 
 
 def here() -> Site:
