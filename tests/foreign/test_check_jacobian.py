@@ -117,7 +117,7 @@ ROWS, COLUMNS = "the tangent of the residual has the", "the tangent of {} has th
 SWAPPED_ROWS = f"{ROWS} translation before rotation"
 JR = "Jr^-1(res) is missing (right at zero residual only)"
 LEFT = "{0} is perturbed from the left, Exp(d) {0}"
-SIGN = "the sign of the residual is opposite"
+SIGN = "the sign is opposite"
 HALF = "rotations are given by half of the angle"
 
 

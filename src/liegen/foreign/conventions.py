@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.algebra.linear import plain
 from liegen.charts import form_chart
 from liegen.manifolds import Group, Node, Value, Vector
 from liegen.manifolds.form import PoseForm, RotationForm
@@ -70,7 +71,7 @@ def of_jacobian(graph: Graph, variable: str) -> Choices:
 def of_residual(graph: Graph) -> Choices:
     """The differences that the residual itself may have: they are those of the rows."""
     z = _measured(graph)
-    sign = (Difference("the sign of the residual is opposite", lambda J, _: -J),)
+    sign = (Difference("the sign is opposite", lambda J, _: -J),)
     order = _order(z.manifold.form, "the residual", rows=True) if z else ()
     return tuple(kind for kind in (order, sign) if kind)
 
@@ -103,7 +104,7 @@ def _missing_jr(graph: Graph) -> tuple[Difference, ...]:
         at: Any = p.values.get(z.operation.show, group.identity())
         r, x = tuple(p.residual), tuple(at.coords)
         chain: Any = blocks(r, x, chart.retract(x, r))[1]
-        block: Array = reduce(np.matmul, [np.array(m, dtype=np.float64) for m in chain])
+        block: Array = reduce(np.matmul, [np.array(m, dtype=np.float64) for m in plain(chain)])
         return np.linalg.solve(block, J).astype(np.float64)
 
     return (Difference("the Jacobian of local at res is missing (right at zero residual only)", change),)
