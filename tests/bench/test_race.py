@@ -32,6 +32,16 @@ def test_own_variants_agree_and_are_timed(function):
     assert found.entries[0].operations < found.entries[3].operations
 
 
+def test_gauss_newton_terms_are_those_of_the_references_jacobians():
+    plain, terms = tasks((between_se2.whitened("full"),))
+    assert terms.name == "between_se2_gauss_newton"
+    assert [port.name for port in terms.outputs] == ["cost", "g_x", "g_y", "H_x_x", "H_x_y", "H_y_y"]
+    found = race(terms, {"liegen": ours.variants, "batches": ours.batches}, QUICK)
+    assert len(found.entries) == 2
+    assert all(max(e.errors.values()) < 1e-12 for e in found.entries)
+    assert found.entries[0].operations > race(plain, {"liegen": ours.variants}, QUICK).entries[0].operations
+
+
 def test_a_wrong_variant_is_not_timed():
     def tampered(task):
         (good,) = ours.variants(task)
