@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bench_tools import QUICK, made
 
-from liegen.bench import casadi_c, ceres_jets, ours, symforce_cpp, wrenfold_cpp
+from liegen.bench import casadi_c, ceres_jets, formulas, ours, symforce_cpp, wrenfold_cpp
 from liegen.bench.peers import PUBLISHED, tasks
 from liegen.bench.race import race
 from liegen.bench.variant import AbsentError, Task
@@ -57,6 +57,15 @@ def test_a_wrong_variant_is_not_timed():
     assert not bad.agrees
     assert bad.times == {}
     assert 0.9e-8 < bad.errors["random"] < 1.1e-8
+
+
+def test_batches_are_right_when_sums_may_be_reordered():
+    """Sine and cosine round to integers by adding a large number: -ffast-math must not fold that away."""
+    (task,) = tasks((formulas.quaternion_interpolation,))
+    makers = {"liegen": ours.variants, "batches": ours.batches}
+    found = race(task, makers, replace(QUICK, flags=("fast math",)))
+    assert [e.flags for e in found.entries] == ["fast math"] * 2
+    assert all(max(e.errors.values()) < 1e-12 for e in found.entries)
 
 
 def test_nan_is_wrong():
