@@ -120,10 +120,12 @@ int liegen_factors_bearing_se2_batch(
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(y, 4, k, count, y_lanes);
             liegen_factors_load(z, 2, k, count, z_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 1, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {

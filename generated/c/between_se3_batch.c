@@ -357,10 +357,12 @@ int liegen_factors_between_se3_batch(
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(y, 7, k, count, y_lanes);
             liegen_factors_load(z, 7, k, count, z_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 6, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {

@@ -109,10 +109,12 @@ int liegen_factors_prior_se2_batch(
             lanes room[LANES_ROOM(9)];
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 3, k, count, res_lanes, room, stream ? &res_pen : NULL);
             if (jacobians) {

@@ -182,10 +182,13 @@ int liegen_factors_projection_cal3_s2_batch(
             liegen_factors_load(p, 3, k, count, p_lanes);
             liegen_factors_load(K, 5, k, count, K_lanes);
             liegen_factors_load(z, 2, k, count, z_lanes);
-            if (jacobians)
-                block_jacobians(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_p_lanes, held);
-            else
+            if (jacobians) {
+                block_jacobians(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_p_lanes,
+                    held);
+            }
+            if (!jacobians) {
                 block_value(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, held);
+            }
             const int broken = lanes_status(held, 1, k, count, status);
             violated |= broken;
             if (broken) {

@@ -96,8 +96,8 @@ def test_a_function_that_stores_before_it_loads_fails(name, tmp_path):
     for folder, content in (("right", text[f"c/{name}.c"]), ("wrong", source)):
         place = tmp_path / folder
         (place / "c").mkdir(parents=True)
-        (place / f"c/{name}.h").write_text(text[f"c/{name}.h"])
-        (place / f"c/{name}.c").write_text(content)
+        for path, unchanged in text.items():
+            (place / path).write_text(content if path == f"c/{name}.c" else unchanged)
         library, compiler = compile_c(place / "c", place)
         arguments = batch(draw_samples(FUNCTIONS[name], 4, 0).inside)
         check = in_place(kernel, Workspace(place, library, compiler), arguments)

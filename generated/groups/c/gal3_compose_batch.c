@@ -385,10 +385,12 @@ int liegen_groups_gal3_compose_batch(
             lanes room[LANES_ROOM(100)];
             liegen_groups_load(x, 11, k, count, x_lanes);
             liegen_groups_load(y, 11, k, count, y_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 11, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

@@ -350,10 +350,12 @@ int liegen_groups_gal3_exp_batch(
             lanes out_D_d_lanes[100];
             lanes room[LANES_ROOM(100)];
             liegen_groups_load(d, 10, k, count, d_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(d_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 11, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

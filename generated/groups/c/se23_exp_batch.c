@@ -273,10 +273,12 @@ int liegen_groups_se23_exp_batch(
             lanes out_D_d_lanes[81];
             lanes room[LANES_ROOM(81)];
             liegen_groups_load(d, 9, k, count, d_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(d_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 10, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

@@ -294,10 +294,12 @@ int liegen_groups_se3_local_batch(
             lanes room[LANES_ROOM(36)];
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(y, 7, k, count, y_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 6, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

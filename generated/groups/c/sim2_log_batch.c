@@ -252,10 +252,12 @@ int liegen_groups_sim2_log_batch(
             lanes out_D_x_lanes[16];
             lanes room[LANES_ROOM(16)];
             liegen_groups_load(x, 5, k, count, x_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

@@ -69,10 +69,12 @@ int liegen_groups_so2_between_batch(
             lanes room[LANES_ROOM(2)];
             liegen_groups_load(x, 2, k, count, x_lanes);
             liegen_groups_load(y, 2, k, count, y_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

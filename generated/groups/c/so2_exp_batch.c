@@ -55,10 +55,12 @@ int liegen_groups_so2_exp_batch(
             lanes out_D_d_lanes[1];
             lanes room[LANES_ROOM(2)];
             liegen_groups_load(d, 1, k, count, d_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(d_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

@@ -53,10 +53,12 @@ int liegen_groups_so2_log_batch(
             lanes out_D_x_lanes[1];
             lanes room[LANES_ROOM(1)];
             liegen_groups_load(x, 2, k, count, x_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 1, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

@@ -127,10 +127,12 @@ int liegen_groups_so3_act_batch(
             lanes room[LANES_ROOM(9)];
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

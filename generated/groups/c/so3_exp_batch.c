@@ -97,10 +97,12 @@ int liegen_groups_so3_exp_batch(
             lanes out_D_d_lanes[9];
             lanes room[LANES_ROOM(9)];
             liegen_groups_load(d, 3, k, count, d_lanes);
-            if (jacobians)
+            if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
-            else
+            }
+            if (!jacobians) {
                 block_value(d_lanes, out_lanes);
+            }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
             if (jacobians) {

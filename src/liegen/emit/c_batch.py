@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 
 from liegen.kernel import Kernel
 from liegen.program import Program
@@ -43,6 +44,8 @@ BATCH_NAMES = words("""
     lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL block_value block_jacobians
     ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
+#: Longest call, without the indentation of the loop.
+_WIDTH = 92
 _FORMATS = {
     "scalar": "const lanes {0} = {1};",
     "condition": "const lanes_mask {0} = {1};",
@@ -184,9 +187,9 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     bits, place = len(kernel.value.requirements), f"{names.k}, {names.count}"
     extra = [names.held] if bits else []
 
-    def call(block: Block, outputs: Sequence[str]) -> str:
+    def call(block: Block, outputs: Sequence[str]) -> list[str]:
         arguments = [names.arrays[name] for name in (*(a.name for a in kernel.arguments), *outputs)]
-        return f"{block.name}({', '.join([*arguments, *extra])});"
+        return wrap(f"{block.name}({', '.join([*arguments, *extra])});", _WIDTH, subsequent_indent="    ")
 
     def blank(name: str) -> str:
         return f"lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
@@ -207,10 +210,10 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
         f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments
     ]
     if added:
-        lines += [f"if ({names.jacobians})", f"    {call(blocks[1], [*sizes])}", "else"]
-        lines += [f"    {call(blocks[0], values)}"]
+        lines += _indented(names.jacobians, call(blocks[1], [*sizes]))
+        lines += _indented(f"!{names.jacobians}", call(blocks[0], values))
     else:
-        lines += [call(blocks[0], values)]
+        lines += call(blocks[0], values)
     if bits:
         lines += [f"const int {names.broken} = lanes_status({names.held}, {bits}, {place}, status);"]
         lines += [f"{names.violated} |= {names.broken};"]
