@@ -228,7 +228,7 @@ MISTAKES = {
         [DECORATOR, BODY, "broken", "'res'", "'log'", "32 random samples", "require(...)"],
     ),
     "Jacobian not a number everywhere": (
-        broken("x: R3", "return liegen.sqrt(liegen.maximum(-norm(x), 0.0))"),
+        broken("x: R3", "return liegen.sqrt(norm(x) / norm(x) - 1)"),
         [DECORATOR, BODY, "broken", "'res_D_x'", "'sqrt'", "32 random samples", "require(...)"],
     ),
     "domain that no sample reaches": (

@@ -24,7 +24,7 @@ _FREE = frozenset(
     ("v", "a", "w", "g", "f", "u", "n", "velocity", "acceleration", "gravity", "force", "omega")
 )
 #: Vectors of these dimensions live in a frame: those of plane and space, and twists of groups in MAPS.
-_SPATIAL = (2, 3, 4, 6, 7, 9, 10)
+_SPATIAL = (2, 3, 6, 7, 9, 10)
 #: Classes whose elements have two frames, with how a report describes them. They compose, invert and move
 #: vectors as poses do; an operation of their own, if they have any, needs a rule in frame_rules. The first
 #: entry that fits counts.
