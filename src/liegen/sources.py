@@ -69,7 +69,7 @@ def select(functions: Sequence[AnyFunction], names: Iterable[str]) -> tuple[AnyF
         if name not in known:
             near = difflib.get_close_matches(name, known, 3) or [k for k in known if name in k]
             hint = f"did you mean {' or '.join(near)}? " if near else ""
-            raise SourceError(f"there is no factor {name!r}; {hint}There are: {', '.join(known)}")
+            raise SourceError(f"there is no factor {name!r}; {hint}there are: {', '.join(known)}")
     return tuple(f for f in functions if not wanted or f.name in wanted)
 
 

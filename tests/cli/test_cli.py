@@ -173,7 +173,7 @@ def test_foreign_files_are_left_untouched(source, tmp_path):
         (["generate", "nowhere.py", "-o", "out"], "nowhere.py does not exist"),
         (["generate", ".", "-o", "out"], "is neither a Python file nor a dotted module"),
         (["generate", "not.there", "-o", "out"], "there is no module 'not.there'"),
-        (["generate", "robot", "-o", "out", "-f", "nothing"], "There are: lever_arm_range, first_entries"),
+        (["generate", "robot", "-o", "out", "-f", "nothing"], "there are: lever_arm_range, first_entries"),
         (["generate", "robot.py", "-f", "first_entry", "-o", "out"], "did you mean first_entries?"),
         (["generate", "robot.py"], "Missing option '-o'"),
         (["generate", "robot.py", "-o", "out", "-t", "rust"], "'rust' is not one of 'numpy', 'c'"),

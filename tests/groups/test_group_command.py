@@ -68,8 +68,8 @@ def test_the_tree_that_is_checked_in_is_up_to_date():
 
 
 def test_wrong_groups():
-    assert "no group 'se3'; did you mean SE3? There are: " in run("list", "--group", "se3", code=2)
-    assert "There are:" in run("generate", "--group", "Banana", "-o", "nowhere", code=2)
+    assert "no group 'se3'; did you mean SE3? there are: " in run("list", "--group", "se3", code=2)
+    assert "there are:" in run("generate", "--group", "Banana", "-o", "nowhere", code=2)
     assert "not both" in run("verify", "factors.py", "--group", "SE3", code=2)
     assert "did you mean" in run("explain", "se3_jr", "--group", "SE3", code=2)
     assert not Path("nowhere").exists()

@@ -9,8 +9,11 @@ from liegen import (
     R1,
     R3,
     S2,
+    SE2,
     SE3,
     SO3,
+    Chart,
+    Product,
     factor,
     function,
     library,
@@ -137,8 +140,68 @@ def test_headers_of_functions_state_declared_frames_only():
 
 def test_another_chart_is_named_where_its_columns_are_elsewhere():
     lines = library.between_se3.in_chart("ceres").frames.lines
-    assert "chart ceres: columns of x in its axes and order, see Conventions" in lines
-    assert "chart ceres: local (rows, noise) in its axes and order, see Conventions" in lines
+    assert "chart ceres: columns of x; order and scale are under Conventions" in lines
+    assert "chart ceres: local, rows and noise; order and scale are under Conventions" in lines
+    assert not any("body frame of y" in line for line in lines)
+    assert library.prior_s2.in_chart("ceres").frames.lines == library.prior_s2.frames.lines
+
+
+class Rig(Product):
+    T_WB: SE3
+    v_W: R3
+
+
+@pytest.mark.parametrize(
+    ("chart", "columns", "noise"),
+    [
+        ("gtsam", "B", "C"),
+        ("sophus", "B", "C"),
+        ("g2o", "B", "C"),
+        ("ceres", "W", "B"),
+        ("ros", "W", "B"),
+        (Chart(side="left"), "W", "B"),
+        ("symforce", "B (columns 0:3), W (columns 3:6)", "C (rows 0:3), B (rows 3:6)"),
+        (Chart("left", translation="body"), "W (columns 0:3), B (columns 3:6)", "B (rows 0:3), C (rows 3:6)"),
+    ],
+)
+def test_frames_are_those_of_the_chart(chart, columns, noise):
+    """z.local(y) of a pose z of C in B: a chart on the left or in the world is along B's axes."""
+
+    @factor
+    def edge(T_WB: SE3, T_WC: SE3, *, z_BC: SE3):
+        return z_BC.local(T_WB.between(T_WC))
+
+    found = edge.in_chart(chart).frames
+    assert found.columns["T_WB"] == columns
+    assert found.noise == found.residual == noise
+
+
+def test_frames_of_the_plane_and_of_products_in_a_chart():
+    @factor
+    def flat(T_WB: SE2, *, z_WB: SE2):
+        return -z_WB.local(T_WB)
+
+    @factor
+    def rig(x: Rig, *, z: Rig):
+        return z.local(x)
+
+    found = flat.in_chart("ceres").frames
+    assert found.columns == {"T_WB": "W (columns 0:2), B (columns 2:3)"}
+    assert found.noise == "W (rows 0:2), B (rows 2:3)"
+    assert rig.in_chart("ceres").frames.columns == {"x": "W"}
+    assert rig.frames.columns == {"x": "B of x (columns 0:6), W (columns 6:9)"}
+
+
+def test_the_frame_of_a_charts_columns_is_the_one_in_which_they_turn():
+    """Turning all of W, the axes of ceres' columns, leaves columns along W turned by it."""
+    Q, q = SE3.exp([0.3, -0.2, 0.5, 0, 0, 0]), SO3.exp([0.3, -0.2, 0.5])
+    x, y = SE3.exp([0.1, 0.7, -0.4, 1, 2, 3]), SE3.exp([-0.5, 0.2, 0.3, 2, 0, 1])
+    z = y.inverse() @ x
+    turn = np.kron(np.eye(2), np.asarray(q.matrix()).reshape(3, 3))
+    f = library.between_se3.in_chart("ceres")
+    D, E = (f.jacobians(a, b, z=z)["res_D_x"] for a, b in ((x, y), (Q @ x, Q @ y)))
+    np.testing.assert_allclose(E @ turn, D, rtol=0, atol=1e-13)
+    assert np.abs(E - D).max() > 0.1
 
 
 # the documentation

@@ -52,17 +52,19 @@ def _of_function(function: AnyFunction, names: tuple[str, ...]) -> tuple[list[Va
         reason = "the factor states its chart itself"
         return [Variant(function, names)], [Remark(function.name, names, reason)]
     charted: dict[Any, tuple[AnyFunction, list[str]]] = {}
-    missing: list[Remark] = []
+    refused: dict[str, str] = {}
     for name in names:
         try:
             inside = function.in_chart(name)
             charted.setdefault(_key(inside.graph, name), (inside, []))[1].append(name)
         except DefinitionError as error:
-            missing.append(Remark(function.name, (name,), f"has no such chart: {error}"))
+            refused[name] = str(error).partition(f"{function.name}: ")[2] or str(error)
     found = [Variant(f, tuple(presets)) for f, presets in charted.values()]
+    if refused:
+        return found, [Remark(function.name, tuple(refused), next(iter(refused.values())))]
     if not _charted(function.graph):
-        missing.append(Remark(function.name, names, SAME))
-    return found, missing
+        return found, [Remark(function.name, names, SAME)]
+    return found, []
 
 
 def _charted(graph: Graph) -> bool:
@@ -81,10 +83,11 @@ def _key(graph: Graph, name: str) -> tuple[Any, ...]:
 
 def _choice(form: ManifoldForm, name: str) -> Any:
     """The choices that matter; None for the manifold's own chart."""
-    charted = form_chart(form, PRESETS[name])
-    if charted is None:
+    if form.parts:
+        return tuple(_choice(part, name) for part in form.parts)
+    if form_chart(form, PRESETS[name]) is None:
         return None
-    chart = charted.chart
+    chart = PRESETS[name].chart(form)
     turn = (chart.side, chart.rotation, chart.scale)
     return turn if isinstance(form, RotationForm) else (*turn, chart.translation, _order(chart.order, form))
 

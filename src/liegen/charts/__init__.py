@@ -6,6 +6,7 @@ from .chart import Chart as Chart
 from .chart import Preset as Preset
 from .contract import FormChart as FormChart
 from .forms import form_chart as form_chart
+from .forms import has_charts as has_charts
 from .presets import GTSAM as GTSAM
 from .presets import PRESETS as PRESETS
 from .presets import preset as preset

@@ -8,14 +8,11 @@ from typing import Any
 from liegen.algebra.linear import Chain, Vector
 from liegen.manifolds.form import Compute, Coords, Rule
 
-from .chart import Chart
-
 
 class FormChart(ABC):
     """A chart other than the manifold's own. All blocks are by right exponential perturbations x exp(e)."""
 
     form: Any
-    chart: Chart
     note: str  # one line on storage and chart, as of a ManifoldForm
 
     @abstractmethod
@@ -27,12 +24,12 @@ class FormChart(ABC):
         """The coordinates at x that lead to y."""
 
     @abstractmethod
-    def retract_blocks(self) -> Rule:
-        """Rule (result, x, d) -> blocks of ``retract``."""
+    def retract_blocks(self) -> Rule | None:
+        """Rule (result, x, d) -> blocks of ``retract``; None stands for automatic differentiation."""
 
     @abstractmethod
-    def local_blocks(self) -> Rule:
-        """Rule (result, x, y) -> blocks of ``local``."""
+    def local_blocks(self) -> Rule | None:
+        """Rule (result, x, y) -> blocks of ``local``; None stands for automatic differentiation."""
 
     def local_between(self) -> tuple[Compute, Rule] | None:
         """As that of :class:`GroupForm`, in this chart."""

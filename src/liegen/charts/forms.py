@@ -5,20 +5,29 @@ from __future__ import annotations
 from liegen.errors import DefinitionError
 from liegen.manifolds import ManifoldForm
 from liegen.manifolds.form import PoseForm, RotationForm
+from liegen.manifolds.gal3_form import Gal3Form
+from liegen.manifolds.product_form import ProductForm
+from liegen.manifolds.se23_form import SE23Form
 from liegen.manifolds.similarity_form import SimilarityForm
 
 from .chart import Chart, Preset
 from .contract import FormChart
 from .poses import CoupledChart, SplitChart
+from .presets import PRESETS
+from .products import ProductChart
 from .rotations import RotationChart
 
 
 def form_chart(form: ManifoldForm, preset: Preset) -> FormChart | None:
     """The preset's chart of a manifold; None where it is the manifold's own: vectors, S2, calibrations too.
 
-    Raises DefinitionError where the chart does not exist for the manifold.
+    Products have the charts of their parts. Raises DefinitionError where the chart does not exist for the
+    manifold.
     """
-    if isinstance(form, SimilarityForm):
+    if isinstance(form, ProductForm):
+        charts = tuple(form_chart(part, preset) for part in form.parts)
+        return ProductChart(form, charts, form.note) if any(charts) else None
+    if isinstance(form, SimilarityForm | SE23Form | Gal3Form):
         return _only_chart(form, preset)
     if not isinstance(form, RotationForm | PoseForm):
         return None
@@ -44,12 +53,19 @@ def form_chart(form: ManifoldForm, preset: Preset) -> FormChart | None:
     return None if same else CoupledChart(form, chart, note)
 
 
-def _only_chart(form: SimilarityForm, preset: Preset) -> None:
-    """Similarities have x exp(d) alone; raises DefinitionError for what a preset means by another chart."""
+def has_charts(form: ManifoldForm) -> bool:
+    """Whether the manifold, or a part of it, has more than one chart."""
+    return isinstance(form, RotationForm | PoseForm) or any(map(has_charts, form.parts))
+
+
+def _only_chart(form: ManifoldForm, preset: Preset) -> None:
+    """GTSAM's alone; raises DefinitionError for what a preset means by another chart."""
     if preset.chart(form) != Chart():
+        names = [repr(p.name) for p in PRESETS.values() if p.chart(form) == Chart()]
+        own = form.note.rpartition("; ")[2]
         raise DefinitionError(
-            f"{form.name} has no chart {preset.name!r}; the one that exists is x.retract(d) = x exp(d), "
-            "chart 'gtsam', with the tangent " + ", ".join(form.tangent)
+            f"{form.name} has no chart {preset.name!r}; the one that exists is {own}, chart "
+            f"{' or '.join(names)}, with the tangent {', '.join(form.tangent)}"
         )
 
 

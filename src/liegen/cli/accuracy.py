@@ -168,9 +168,12 @@ def _some(names: Sequence[str]) -> str:
 
 
 def _remarks(report: AccuracyReport) -> Iterable[str]:
+    from liegen.charts import PRESETS
+
     reasons: dict[str, list[str]] = {}
     for remark in report.remarks:
-        presets = "all presets" if len(remark.presets) > 1 else ", ".join(remark.presets)
+        every = len(remark.presets) == len(PRESETS)
+        presets = "all presets" if every else ", ".join(remark.presets)
         reasons.setdefault(f"{presets}: {remark.reason}", []).append(remark.function)
     for reason, names in reasons.items():
         yield f"{_some(names)}: {reason}"

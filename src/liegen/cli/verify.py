@@ -184,9 +184,22 @@ def _skipped(factors: Iterable[FactorReport]) -> Iterable[str]:
     """The samples that were left out, once for all factors with the same."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for factor in factors:
-        reasons = tuple(sorted({reason for check in factor.checks for reason in check.skipped}))
-        groups.setdefault(reasons, []).append(factor.factor)
-    for reasons, names in groups.items():
-        if reasons:
-            shown = "; ".join(reasons[:LISTED]) + ("; ..." if len(reasons) > LISTED else "")
-            yield f"{', '.join(names)}: nothing to compare with at: {shown}"
+        groups.setdefault(tuple(_left_out(factor.checks)), []).append(factor.factor)
+    for said, names in groups.items():
+        if said:
+            yield f"{', '.join(names)}: left out: {'; '.join(said)}"
+
+
+def _left_out(checks: Iterable[Check]) -> Iterable[str]:
+    """``identity, coincident in Taylor (why)``: cases with the same reason in the same checks together."""
+    checked: dict[tuple[str, str], list[str]] = {}
+    for check in checks:
+        for entry in dict.fromkeys(check.skipped):
+            case, _, reason = entry.partition(": ")
+            checked.setdefault((reason, case), []).append(check.name)
+    cases: dict[tuple[str, str], list[str]] = {}
+    for (reason, case), names in checked.items():
+        cases.setdefault((reason, ", ".join(names)), []).append(case)
+    for (reason, names), where in cases.items():
+        shown = ", ".join(where[:LISTED]) + (", ..." if len(where) > LISTED else "")
+        yield f"{shown} in {names} ({reason})"

@@ -96,6 +96,8 @@ def _missing_jr(graph: Graph) -> tuple[Difference, ...]:
         )
 
     blocks: Any = chart.local_blocks()
+    if blocks is None:
+        return ()
 
     def change(J: Array, p: Point) -> Array:
         at: Any = p.values.get(z.operation.show, group.identity())

@@ -31,6 +31,12 @@ def diagonal_chain(chains: Sequence[Chain]) -> Chain:
     return tuple(block_diagonal(*factors) for factors in zip(*padded, strict=True))
 
 
+def all_of(rules: Sequence[Rule | None]) -> list[Rule] | None:
+    """The rules, if there is one of every part."""
+    known = [rule for rule in rules if rule is not None]
+    return known if len(known) == len(rules) else None
+
+
 def _by_part(rules: Sequence[Any], *splits: Callable[[Coords], list[Coords]]) -> Rule:
     """A rule of result and two operands that takes every part by its own rule."""
 
@@ -109,19 +115,19 @@ class ProductForm(ManifoldForm):
         return block_diagonal(*known) if curved and len(known) == len(filled) else None
 
     def retract_blocks(self) -> Rule | None:
-        rules = [form.retract_blocks() for form in self.parts]
-        known = [rule for rule in rules if rule is not None]
-        return self._retract_rule(known) if len(known) == len(rules) else None
+        known = all_of([form.retract_blocks() for form in self.parts])
+        return self.retract_rule(known) if known else None
 
     def local_blocks(self) -> Rule | None:
-        rules = [form.local_blocks() for form in self.parts]
-        known = [rule for rule in rules if rule is not None]
-        return self._local_rule(known) if len(known) == len(rules) else None
+        known = all_of([form.local_blocks() for form in self.parts])
+        return self.local_rule(known) if known else None
 
-    def _retract_rule(self, rules: Sequence[Rule]) -> Rule:
+    def retract_rule(self, rules: Sequence[Rule]) -> Rule:
+        """The rule of ``retract`` from those of the parts."""
         return _by_part(rules, self.split, self.split, self.split_tangent)
 
-    def _local_rule(self, rules: Sequence[Rule]) -> Rule:
+    def local_rule(self, rules: Sequence[Rule]) -> Rule:
+        """The rule of ``local`` from those of the parts."""
         return _by_part(rules, self.split_tangent, self.split, self.split)
 
     def draw(self, source: Source, spread: float) -> Sequence[float]:
@@ -145,10 +151,10 @@ class GroupProductForm(ProductForm, GroupForm):
         return [getattr(form, name)(*of_part) for form, of_part in zip(self.groups, own, strict=True)]
 
     def retract_blocks(self) -> Rule:
-        return self._retract_rule([form.retract_blocks() for form in self.groups])
+        return self.retract_rule([form.retract_blocks() for form in self.groups])
 
     def local_blocks(self) -> Rule:
-        return self._local_rule([form.local_blocks() for form in self.groups])
+        return self.local_rule([form.local_blocks() for form in self.groups])
 
     def identity(self) -> Vector:
         return joined([form.identity() for form in self.groups])

@@ -51,7 +51,7 @@ def group_named(name: str) -> type[Group]:
     if name not in known:
         near = difflib.get_close_matches(name.upper(), known, 1)
         hint = f"did you mean {near[0]}? " if near else ""
-        raise SourceError(f"there is no group {name!r}; {hint}There are: {', '.join(known)}")
+        raise SourceError(f"there is no group {name!r}; {hint}there are: {', '.join(known)}")
     return known[name]
 
 

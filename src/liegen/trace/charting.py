@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from liegen.charts import GTSAM, Chart, Preset, form_chart, preset
+from liegen.charts import GTSAM, Chart, Preset, form_chart, has_charts, preset
 from liegen.errors import DefinitionError
 from liegen.manifolds import Node, Operation
-from liegen.manifolds.form import PoseForm, RotationForm
 
-from .frame_report import FrameReport
 from .graph import Graph, Parameter
 
 #: A chart for everything, by name or as a value, or charts by variable.
@@ -38,8 +36,7 @@ def in_charts(graph: Graph, chart: ChartLike | None) -> Graph:
         for form in (n.manifold.form for n in graph.nodes()):
             form_chart(form, common)
         parameters = tuple(_parameter(p, own.get(p.name, common)) for p in graph.parameters)
-        return replace(_rewritten(graph, common), parameters=parameters, chart=common,
-                       frames=_frames(graph.frames, parameters, common))  # fmt: skip
+        return replace(_rewritten(graph, common), parameters=parameters, chart=common)
     except DefinitionError as error:
         raise DefinitionError(f"{what}: {error}") from None
 
@@ -55,10 +52,10 @@ def _refuse_other(name: str, variables: Mapping[str, Parameter], what: str) -> N
             f"{what}: chart={{{name!r}: ...}} names no variable; there are {', '.join(variables)}"
         )
     form = variables[name].manifold.form
-    if not isinstance(form, RotationForm | PoseForm):
+    if not has_charts(form):
         raise DefinitionError(
             f"{what}: {name!r} is {form.name}, which has only its own chart; charts exist for SO2, SE2, "
-            "SO3 and SE3"
+            "SO3, SE3 and products of these"
         )
 
 
@@ -94,17 +91,3 @@ def _operation(node: Node, chart: Preset) -> Operation:
     value = found.local if old.name == "local" else found.retract
     blocks = found.local_blocks() if old.name == "local" else found.retract_blocks()
     return Operation(old.name, old.result, value, blocks, old.show, (chart,))
-
-
-def _frames(report: FrameReport, parameters: tuple[Parameter, ...], common: Preset) -> FrameReport:
-    """Frames are those of right perturbations: a line says where a chart has other ones."""
-    charts = {p.name: p.chart for p in parameters if p.variable and form_chart(p.manifold.form, p.chart)}
-    turned = {name: c.name for name, c in charts.items()}
-    if not report.lines or (not turned and common is GTSAM):
-        return report
-    notes = [f"chart {chart}: columns of {name} in its axes and order, see Conventions"
-             for name, chart in turned.items()]  # fmt: skip
-    notes += [f"chart {common.name}: local (rows, noise) in its axes and order, see Conventions"] * (
-        common is not GTSAM
-    )
-    return replace(report, lines=(*report.lines, *notes))

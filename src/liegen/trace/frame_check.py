@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import chain
 from typing import Any, NoReturn
 
+from liegen.charts import GTSAM
 from liegen.errors import DefinitionError
 from liegen.manifolds import Leaf, Node, Value, Vector
 from liegen.manifolds.pose import Pose
@@ -15,6 +16,7 @@ from liegen.manifolds.rotation import Rotation
 from liegen.manifolds.similarity import Similarity
 
 from .formulas import show
+from .frame_axes import OWN, Charts, in_chart, of_rows, said
 from .frame_declared import is_map, pieces
 from .frame_fit import leaves, misfit
 from .frame_names import Kind
@@ -32,8 +34,8 @@ _LONG = 60
 _DOTS = Text("...", ATOM)
 
 
-def check_frames(graph: Graph) -> FrameReport:
-    """Find the frames of all values of a graph.
+def check_frames(graph: Graph, charts: Charts = OWN) -> FrameReport:
+    """Find the frames of all values of a graph; what is reported of tangents is in ``charts``.
 
     Raises DefinitionError, with the line and the likely repair, where declared frames do not fit. Values
     without declared frames fit anything.
@@ -45,7 +47,7 @@ def check_frames(graph: Graph) -> FrameReport:
         if call.checked:
             _check_call(call, found)
     _coincide_at_zero(found)
-    return _report(found)
+    return _report(found, charts)
 
 
 @dataclass(frozen=True)
@@ -195,7 +197,7 @@ def _coincide_at_zero(found: _Check) -> None:
                 found.solver.equal(measured, predicted)
 
 
-def _report(found: _Check) -> FrameReport:
+def _report(found: _Check, charts: Charts) -> FrameReport:
     graph, values, solver = found.graph, found.values, found.solver
     arguments: dict[str, tuple[str, ...]] = {}
     columns: dict[str, str] = {}
@@ -208,30 +210,15 @@ def _report(found: _Check) -> FrameReport:
             known = tuple(name for name in names if name is not None)
             if len(known) == len(names):
                 arguments[piece.path] = known
-        column = _spread(values[p.node], p.manifold, solver, "columns")
+        preset, dim = charts.columns.get(p.name, GTSAM), p.manifold.form.dim
+        column = said(in_chart(values[p.node], p.manifold, p.name, preset), dim, solver, "columns")
         if p.variable and column:
             columns[p.name] = column
     rows = {
         name: row
         for name, node in graph.outputs
-        if (row := _spread(values[node], node.manifold, solver, "rows"))
+        if (row := said(of_rows(node, values, charts.rows), node.manifold.form.dim, solver, "rows"))
     }
     declared = any(p.frames for p in graph.parameters)
     report = FrameReport(declared, arguments, rows, columns)
-    return replace(report, lines=lines(graph, values, report))
-
-
-def _spread(value: Framed, manifold: type[Value], solver: Solver, what: str) -> str | None:
-    """The frame of a value's tangent; of stacked vectors and of products the frame of each part."""
-    if value.kind is Kind.CAMERA:
-        return None
-    said: list[tuple[str, int, int]] = []
-    for part in value.flat():
-        frame = None if part.value.kind is Kind.CAMERA else solver.said(part.value.inner)
-        if said and frame and said[-1][0] == frame and said[-1][2] == part.start:
-            said[-1] = (frame, said[-1][1], part.stop)
-        elif frame:
-            said.append((frame, part.start, part.stop))
-    if not value.parts or (len(said) == 1 and said[0][1:] == (0, manifold.form.dim)):
-        return said[0][0] if said else solver.said(value.inner)
-    return ", ".join(f"{frame} ({what} {start}:{stop})" for frame, start, stop in said) or None
+    return replace(report, lines=lines(graph, values, report, charts))

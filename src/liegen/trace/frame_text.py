@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from liegen.charts import form_chart
 from liegen.manifolds import S2, SO2, Leaf, Node, Product
 
+from .frame_axes import Charts, charted
 from .frame_declared import MAPS, Piece, is_map, pieces
 from .frame_fit import leaves
 from .frame_names import Kind
@@ -14,9 +16,12 @@ from .frame_terms import Framed
 from .graph import Graph
 
 
-def lines(graph: Graph, values: Mapping[Node, Framed], report: FrameReport) -> tuple[str, ...]:
-    """What each argument is, then the frames of rows, noise and columns."""
-    return (*_arguments(graph, values, report), *_outputs(graph, values, report), *_columns(graph, report))
+def lines(
+    graph: Graph, values: Mapping[Node, Framed], report: FrameReport, charts: Charts
+) -> tuple[str, ...]:
+    """What each argument is, then the frames of rows, noise and columns, then charts."""
+    found = (*_arguments(graph, values, report), *_outputs(graph, values, report), *_columns(graph, report))
+    return (*found, *_charts(graph, charts)) if found else ()
 
 
 def _arguments(graph: Graph, values: Mapping[Node, Framed], report: FrameReport) -> Iterator[str]:
@@ -72,3 +77,13 @@ def _columns(graph: Graph, report: FrameReport) -> Iterator[str]:
         for variable, frame in report.columns.items():
             basis = f", in the tangent basis at {variable}" if variable in directions else ""
             yield f"{name}_D_{variable}: columns in {frame}{basis}"
+
+
+def _charts(graph: Graph, charts: Charts) -> Iterator[str]:
+    """Where coordinates are not those of x exp(d)."""
+    for p in graph.parameters:
+        preset = charts.columns.get(p.name)
+        if p.variable and preset and form_chart(p.manifold.form, preset):
+            yield f"chart {preset.name}: columns of {p.name}; order and scale are under Conventions"
+    if charted(graph.nodes(), tuple(node for _, node in graph.outputs), charts.rows):
+        yield f"chart {charts.rows.name}: local, rows and noise; order and scale are under Conventions"

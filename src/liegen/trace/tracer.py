@@ -17,6 +17,7 @@ from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
 
 from .charting import ChartLike, common_chart, in_charts
+from .frame_axes import Charts
 from .frame_check import check_frames
 from .frame_declared import Declared, declared
 from .frame_names import Frames
@@ -214,8 +215,9 @@ def trace(
     named = _outputs(result, f"{site}: {name}", factor=factor)
     graph = Graph(name, doc, site, parameters, named, tuple(record.domain), tuple(record.calls))
     _all_used(graph)
-    checked = replace(graph, frames=check_frames(graph)) if frames else graph
-    return in_charts(checked, chart)
+    charted = in_charts(graph, chart)
+    charts = Charts({p.name: p.chart for p in charted.parameters}, charted.chart)
+    return replace(charted, frames=check_frames(graph, charts)) if frames else charted
 
 
 def _with_site(name: str, error: LiegenError) -> str:

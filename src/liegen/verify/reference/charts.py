@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 from .logarithms import Branch
 from .matrix import Element, Matrix, Number, Vector, add, length, matmul, matvec, mp, scale, sub, transpose
-from .spaces import GROUPS, GroupSpace, Space, pose, rotation_of, space_of, translation_of
+from .products import product_space
+from .spaces import GROUPS, GroupSpace, Space, pose, rotation_of, sized, space_of_form, translation_of
 
 if TYPE_CHECKING:
     from liegen.charts import Chart, Preset
-    from liegen.manifolds import Value
+    from liegen.manifolds import ManifoldForm, Value
 
 #: Name of the rotations, dimension of their tangent and of the vectors, whether the rotation is first.
 _KINDS: Mapping[str, tuple[str, int, int, bool]] = {
@@ -130,11 +131,17 @@ class _Poses:
 
 def space_in(manifold: type[Value], preset: Preset | None) -> Space:
     """The reference's entry for a manifold, with retract and local of the preset's chart; None: GTSAM's."""
-    space, name = space_of(manifold), manifold.form.name
+    return _space_in(manifold.form, preset)
+
+
+def _space_in(form: ManifoldForm, preset: Preset | None) -> Space:
+    space, name = space_of_form(form), form.name
+    if preset is not None and form.parts:
+        return product_space(sized(form), [_space_in(part, preset) for part in form.parts])
     if preset is None or name not in _KINDS:
         return space
     kind, turn, move, first = _KINDS[name]
-    chart = preset.chart(manifold.form)
+    chart = preset.chart(form)
     rotations = _Rotations(GROUPS[kind], chart)
     charted = rotations if name == kind else _Poses(GROUPS[name], rotations, chart, (turn, move), first)
 

@@ -263,7 +263,7 @@ def _key(form: ManifoldForm) -> str:
 
 def space_of(manifold: type[Value]) -> Space:
     """The reference's entry for a manifold."""
-    return _space(manifold.form)
+    return space_of_form(manifold.form)
 
 
 def group_of(manifold: type[Value]) -> GroupSpace:
@@ -271,15 +271,19 @@ def group_of(manifold: type[Value]) -> GroupSpace:
     return _group(manifold.form)
 
 
-def _space(form: ManifoldForm) -> Space:
-    return product_space(_sized(form), list(map(_space, form.parts))) if form.parts else SPACES[_key(form)]
+def space_of_form(form: ManifoldForm) -> Space:
+    """That of a form."""
+    return (
+        product_space(sized(form), list(map(space_of_form, form.parts))) if form.parts else SPACES[_key(form)]
+    )
 
 
 def _group(form: ManifoldForm) -> GroupSpace:
-    return product_group(_sized(form), list(map(_group, form.parts))) if form.parts else GROUPS[_key(form)]
+    return product_group(sized(form), list(map(_group, form.parts))) if form.parts else GROUPS[_key(form)]
 
 
-def _sized(form: ManifoldForm) -> list[tuple[int, int]]:
+def sized(form: ManifoldForm) -> list[tuple[int, int]]:
+    """How many numbers each part of a product stores and moves."""
     return [(part.size, part.dim) for part in form.parts]
 
 
