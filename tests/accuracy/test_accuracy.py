@@ -153,6 +153,21 @@ def test_presets_that_agree_are_measured_once_and_those_that_do_not_apply_are_na
     }
 
 
+def test_every_function_of_every_group_has_a_variant_and_presets_that_it_refuses_are_named():
+    functions = list(everything().values())
+    found, remarks = variants(functions, PRESETS)
+    assert {v.function.name for v in found} == {f.name for f in functions}
+    mine = {
+        name: [v.presets for v in found if v.function.name == name] for name in ("sim3_local", "se23_log")
+    }
+    assert mine == {name: [("gtsam", "gtsam-4.2")] for name in mine}
+    (said,) = [r for r in remarks if r.function == "sim3_local"]
+    assert said.presets == tuple(name for name in PRESETS if name not in ("gtsam", "gtsam-4.2"))
+    assert said.reason.startswith(
+        "Sim3 has no chart 'symforce'; the one that exists is x.retract(d) = x exp(d)"
+    )
+
+
 def test_retract_by_a_quaternion_vector_loses_digits_towards_half_a_turn():
     graph = everything()["so3_retract"].in_chart("g2o").graph
     x = (0.0, 0.0, 0.0, 1.0)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from itertools import combinations_with_replacement
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -104,6 +106,21 @@ def test_evaluated_by_the_factor():
     np.testing.assert_allclose(terms["cost"], [0.5])
     np.testing.assert_allclose(terms["g_x"], [0, 0, 0, 0, 0, 1], atol=1e-15)
     assert terms["H_x_x"].shape == (6, 6)
+
+
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "gauss_newton.md"
+ROWS = re.findall(
+    r"^\| `(\w+)`(, full noise)? \| (\d+) \| (\d+) \| \d+ \|$", DOCUMENT.read_text(), re.MULTILINE
+)
+
+
+def test_the_document_has_the_counts():
+    assert len(ROWS) == 6
+    for name, noise, jacobians, terms in ROWS:
+        plain = getattr(library, name)
+        f = plain.whitened("full") if noise else plain
+        counts = f.kernel.jacobians.operations, f.gauss_newton_kernel.value.operations
+        assert counts == (int(jacobians), int(terms)), name
 
 
 def test_generate_and_check(tmp_path):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Literal, get_args, get_type_hints
+from dataclasses import dataclass
+from typing import Literal
 
-from liegen.errors import DefinitionError
 from liegen.manifolds import ManifoldForm
-from liegen.manifolds.node import here
+
+from .choices import Choices
 
 Side = Literal["right", "left"]
 RotationMap = Literal["exp", "cayley", "quaternion-vector"]
@@ -17,7 +17,7 @@ Order = Literal["own", "rotation-first", "translation-first"]
 
 
 @dataclass(frozen=True)
-class Chart:
+class Chart(Choices):
     """The chart of a rotation R or a pose (R, t), with coordinates w of the rotation, v of the translation.
 
     ``side``: right turns about the body's axes, R' = R m(k w); left about the world's, R' = m(k w) R.
@@ -26,7 +26,8 @@ class Chart:
     rotation vector). ``scale``: the factor k; with 2 the coordinates are half angles to first order.
     ``translation``: coupled is the pose's own exponential, x exp(d) or exp(d) x; body is t' = t + R v;
     world is t' = t + v. ``order``: own is rotation first in SE3 and translation first in SE2.
-    Raises DefinitionError for any other choice, and for a coupled translation with a map that is not exp.
+    Raises DefinitionError for any other choice. A coupled translation with a map that is not exp is refused
+    where a pose is in the chart.
     """
 
     side: Side = "right"
@@ -34,22 +35,6 @@ class Chart:
     scale: Scale = 1
     translation: Translation = "coupled"
     order: Order = "own"
-
-    def __post_init__(self) -> None:
-        hints = get_type_hints(type(self))
-        for choice in fields(self):
-            value, possible = getattr(self, choice.name), get_args(hints[choice.name])
-            if value not in possible:
-                raise DefinitionError(
-                    f"{here()}: Chart({choice.name}={value!r}): {choice.name} is one of "
-                    f"{', '.join(map(repr, possible))}"
-                )
-
-    @property
-    def description(self) -> str:
-        """The choices as keyword arguments; default ones are left out."""
-        stated = {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
-        return f"Chart({', '.join(f'{name}={value!r}' for name, value in stated.items())})"
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Literal, get_args, get_type_hints
+from dataclasses import dataclass
+from typing import Literal
 
-from liegen.errors import DefinitionError
+from liegen.charts.choices import Choices
 from liegen.manifolds import ManifoldForm
-from liegen.manifolds.node import here
 
 Rotation = Literal["xyzw", "wxyz", "matrix"]
 Plane = Literal["cos-sin", "angle", "matrix"]
@@ -17,7 +16,7 @@ First = Literal["rotation", "translation"]
 
 
 @dataclass(frozen=True)
-class Layout:
+class Layout(Choices):
     """The numbers that stand for a rotation or a pose where generated code is called.
 
     ``rotation``: of space: unit quaternion (x, y, z, w) or (w, x, y, z), or the 3x3 matrix R. ``plane``: a
@@ -33,22 +32,6 @@ class Layout:
     pose: Pose = "parts"
     order: Order = "row"
     first: First = "rotation"
-
-    def __post_init__(self) -> None:
-        hints = get_type_hints(type(self))
-        for choice in fields(self):
-            value, possible = getattr(self, choice.name), get_args(hints[choice.name])
-            if value not in possible:
-                raise DefinitionError(
-                    f"{here()}: Layout({choice.name}={value!r}): {choice.name} is one of "
-                    f"{', '.join(map(repr, possible))}"
-                )
-
-    @property
-    def description(self) -> str:
-        """The choices as keyword arguments; default ones are left out."""
-        stated = {f.name: getattr(self, f.name) for f in fields(self) if getattr(self, f.name) != f.default}
-        return f"Layout({', '.join(f'{name}={value!r}' for name, value in stated.items())})"
 
 
 @dataclass(frozen=True)

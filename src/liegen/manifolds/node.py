@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
 from typing import Any, ClassVar, NoReturn, Self, TypeVar
 
 import numpy as np
@@ -178,10 +179,16 @@ def _machinery(file: str) -> bool:
     return file.startswith((_PACKAGE, _NUMPY)) and not file.startswith(_LIBRARY)
 
 
+def _generated(frame: FrameType) -> bool:
+    """Whether it is a method that ``dataclasses`` wrote for a class of liegen."""
+    module = str(frame.f_globals.get("__name__"))
+    return frame.f_code.co_filename == "<string>" and module.startswith("liegen.")
+
+
 def here() -> Site:
     """The nearest line outside liegen's machinery: the user's, or the library's."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
-    while frame.f_back is not None and _machinery(frame.f_code.co_filename):
+    while frame.f_back is not None and (_machinery(frame.f_code.co_filename) or _generated(frame)):
         frame = frame.f_back
     return Site(Path(frame.f_code.co_filename).name, frame.f_lineno)
 
