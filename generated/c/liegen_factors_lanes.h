@@ -9,6 +9,13 @@
 #ifndef LIEGEN_FACTORS_LANES_H
 #define LIEGEN_FACTORS_LANES_H
 
+/* Rounding to integers and sums of parts depend on the order that is written. */
+#if defined(__FAST_MATH__) && defined(__clang__)
+#pragma float_control(precise, on)
+#elif defined(__FAST_MATH__) && defined(__GNUC__)
+#pragma GCC optimize("no-fast-math")
+#endif
+
 #include "liegen_factors_batch.h"
 
 #include <math.h>

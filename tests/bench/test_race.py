@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bench_tools import QUICK, made
 
-from liegen.bench import casadi_c, ceres_jets, ours, symforce_cpp, wrenfold_cpp
+from liegen.bench import casadi_c, ceres_jets, formulas, ours, symforce_cpp, wrenfold_cpp
 from liegen.bench.peers import PUBLISHED, tasks
 from liegen.bench.race import race
 from liegen.bench.variant import AbsentError, Task
@@ -32,6 +32,16 @@ def test_own_variants_agree_and_are_timed(function):
     assert found.entries[0].operations < found.entries[3].operations
 
 
+def test_gauss_newton_terms_are_those_of_the_references_jacobians():
+    plain, terms = tasks((between_se2.whitened("full"),))
+    assert terms.name == "between_se2_gauss_newton"
+    assert [port.name for port in terms.outputs] == ["cost", "g_x", "g_y", "H_x_x", "H_x_y", "H_y_y"]
+    found = race(terms, {"liegen": ours.variants, "batches": ours.batches}, QUICK)
+    assert len(found.entries) == 2
+    assert all(max(e.errors.values()) < 1e-12 for e in found.entries)
+    assert found.entries[0].operations > race(plain, {"liegen": ours.variants}, QUICK).entries[0].operations
+
+
 def test_a_wrong_variant_is_not_timed():
     def tampered(task):
         (good,) = ours.variants(task)
@@ -47,6 +57,15 @@ def test_a_wrong_variant_is_not_timed():
     assert not bad.agrees
     assert bad.times == {}
     assert 0.9e-8 < bad.errors["random"] < 1.1e-8
+
+
+def test_batches_are_right_when_sums_may_be_reordered():
+    """Sine and cosine round to integers by adding a large number: -ffast-math must not fold that away."""
+    (task,) = tasks((formulas.quaternion_interpolation,))
+    makers = {"liegen": ours.variants, "batches": ours.batches}
+    found = race(task, makers, replace(QUICK, flags=("fast math",)))
+    assert [e.flags for e in found.entries] == ["fast math"] * 2
+    assert all(max(e.errors.values()) < 1e-12 for e in found.entries)
 
 
 def test_nan_is_wrong():

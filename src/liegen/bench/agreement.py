@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations_with_replacement
 
 import numpy as np
 
@@ -26,7 +27,27 @@ class Errors:
     def of(cls, task: Task, samples: Sequence[Sample]) -> Errors:
         """Evaluate the reference at some samples."""
         blocks = {block.name: block for block in expect(task.function, samples, conditioned=False).blocks}
-        return cls(rows(tuple(samples)), tuple(blocks[port.name] for port in task.outputs))
+        known = _terms(task, blocks) if task.terms else blocks
+        return cls(rows(tuple(samples)), tuple(known[port.name] for port in task.outputs))
+
+
+def _terms(task: Task, blocks: Mapping[str, Block]) -> dict[str, Block]:
+    """Cost, g and H of the reference's residual and Jacobians."""
+    ((output, _),) = task.function.graph.outputs
+    residual = blocks[output]
+    r = residual.expected
+    J = {
+        p.name: blocks[f"{output}_D_{p.name}"].expected.reshape(*r.shape, -1)
+        for p in task.function.graph.parameters
+        if p.variable
+    }
+    found = {"cost": 0.5 * (r * r).sum(axis=2, keepdims=True)}
+    found |= {f"g_{name}": np.einsum("bsij,bsi->bsj", block, r) for name, block in J.items()}
+    found |= {
+        f"H_{a}_{b}": np.einsum("bsij,bsik->bsjk", J[a], J[b]).reshape(*r.shape[:2], -1)
+        for a, b in combinations_with_replacement(J, 2)
+    }
+    return {name: replace(residual, name=name, expected=value) for name, value in found.items()}
 
 
 def errors(loaded: Loaded, reference: Errors) -> float:

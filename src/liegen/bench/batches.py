@@ -59,7 +59,7 @@ class Profile:
 
 def profile(task: Task, *, sizes: Sequence[int], rounds: int, seed: int, flags: str = "plain") -> Profile:
     """Measure one function: single calls, the chain, and batches, each beside its ceilings in turn."""
-    program = task.function.kernel.jacobians
+    program = task.kernel.jacobians
     moved = 8 * sum(port.size for port in (*task.inputs, *task.outputs))
     inputs = draws.rows(draws.samples(task.function, draws.RANDOM, DRAWN, seed))
     kept = tuple(n for n in sizes if n * moved <= ROOM)
@@ -95,7 +95,7 @@ def _size(
     runs.append(machine.copy(repeats, half.nbytes, half, room))
     timed = in_turn(runs, n * repeats, rounds if n <= FACTORS else max(3, rounds // 20))
     *layouts, copy = map(min, timed)
-    operations = task.function.kernel.jacobians.operations
+    operations = task.kernel.jacobians.operations
     best = min(layouts)
     ideal = operations / (ceilings.vector * ceilings.width)
     return Size(n, dict(zip(loaded, layouts, strict=True)), ideal / best, copy / best)
@@ -123,7 +123,7 @@ def batched(task: Task, layout: str) -> Variant:
 
 def chained(task: Task, single: Variant) -> Variant:
     """Calls of which each needs the deepest result of the one before."""
-    tie = f"tie = zero * b[{deepest(task.function.kernel.jacobians)}];"
+    tie = f"tie = zero * b[{deepest(task.kernel.jacobians)}];"
     return replace(single, note="chain", call=(*single.call, tie), driver="bench/chain_driver.c.j2")
 
 

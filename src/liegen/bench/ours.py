@@ -25,7 +25,9 @@ def sources(kernel: Kernel, *, batch: bool) -> dict[str, str]:
 
 def generated(task: Task) -> tuple[dict[str, str], float]:
     """The sources as ``liegen generate`` writes them, and the seconds from the traced function to text."""
-    function = task.function
+    function, terms = task.function, task.terms
+    if terms:
+        return fastest(lambda: sources(terms(), batch=False))
     return fastest(
         lambda: sources(derive(function.plain, function.weighting, in_place=function.in_place), batch=False)
     )
@@ -34,7 +36,7 @@ def generated(task: Task) -> tuple[dict[str, str], float]:
 def variants(task: Task) -> tuple[Variant, ...]:
     """One call a factor."""
     files, seconds = generated(task)
-    kernel = task.function.kernel
+    kernel = task.kernel
     name = f"{PACKAGE}_{kernel.name}"
     inputs = [f"a + {k}" for k in offsets(task.inputs)]
     outputs = [f"b + {k}" for k in offsets(task.outputs)]
@@ -50,7 +52,7 @@ def variants(task: Task) -> tuple[Variant, ...]:
 
 def batches(task: Task) -> tuple[Variant, ...]:
     """One call for ``ROWS`` factors, packed one after the other."""
-    kernel = task.function.kernel
+    kernel = task.kernel
     name = f"{PACKAGE}_{kernel.name}_batch"
     total = [sum(port.size for port in ports) for ports in (task.inputs, task.outputs)]
     structs = [

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
+from liegen.gauss_newton import gauss_newton_kernel
 from liegen.library import between_se2, between_se3, between_so3, prior_se3
 
 from . import casadi_c, ceres_jets, formulas, ours, symforce_cpp, wrenfold_cpp
@@ -37,6 +39,16 @@ PEERS: Mapping[str, Maker] = {
 
 
 def tasks(functions: tuple[AnyFunction, ...]) -> tuple[Task, ...]:
-    """Tasks of these functions; those of ``PUBLISHED`` have formulas of the peers."""
+    """Tasks of these functions; those of ``PUBLISHED`` have formulas of the peers.
+
+    Whitened factors are there twice: as they are, and as Gauss-Newton terms.
+    """
     known = {id(f) for f in PUBLISHED}
-    return tuple(Task(f, id(f) in known) for f in functions)
+    found: list[Task] = []
+    for f in functions:
+        found.append(Task(f, id(f) in known))
+        if f.weighting:
+            found.append(
+                Task(f, id(f) in known, partial(gauss_newton_kernel, f.kernel, f.plain, f.weighting))
+            )
+    return tuple(found)

@@ -5,7 +5,8 @@ The same closed forms inside another generator show what is mathematics and what
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from itertools import combinations_with_replacement
 from typing import Any
 
 from liegen.algebra import Algebra
@@ -24,11 +25,31 @@ EIGEN_OPTIONS = ("-I/usr/include/eigen3", "-DEIGEN_MAX_STATIC_ALIGN_BYTES=0", "-
 
 def closed_forms(task: Task, arguments: Mapping[str, Sequence[Any]], algebra: Algebra) -> Rows:
     """All outputs of liegen's program, evaluated on the scalars of ``algebra``."""
-    program = task.function.kernel.jacobians
+    program = task.kernel.jacobians
     slots = program.run(arguments, algebra)
     return {
         port.name: rows_of(port, [slots[i] for i in indices])
         for port, indices in zip(program.outputs, program.results, strict=True)
+    }
+
+
+def finished(task: Task, derived: Rows, matrix: Callable[[Sequence[Sequence[Any]]], Any]) -> Rows:
+    """A residual with Jacobians as it is or, for a task of terms, J^T J and J^T r of it.
+
+    ``matrix`` makes one of the peer from rows; it has ``T`` and ``*``.
+    """
+    if not task.terms:
+        return derived
+    ((output, _),) = task.function.graph.outputs
+    r = matrix(derived[output])
+    J = {
+        p.name: matrix(derived[f"{output}_D_{p.name}"]) for p in task.function.graph.parameters if p.variable
+    }
+    found = {"cost": r.T * r / 2, **{f"g_{name}": J[name].T * r for name in J}}
+    found |= {f"H_{a}_{b}": J[a].T * J[b] for a, b in combinations_with_replacement(J, 2)}
+    return {
+        name: [[block[i, j] for j in range(block.shape[1])] for i in range(block.shape[0])]
+        for name, block in found.items()
     }
 
 

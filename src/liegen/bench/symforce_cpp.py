@@ -14,7 +14,7 @@ from liegen.algebra import Algebra
 from liegen.manifolds import ManifoldForm
 
 from .operations import counted
-from .programs import EIGEN_OPTIONS, FORMS, Rows, closed_forms, eigen_wrapper, prototype
+from .programs import EIGEN_OPTIONS, FORMS, Rows, closed_forms, eigen_wrapper, finished, prototype
 from .symforce_formulas import FORMULAS
 from .variant import AbsentError, Task, Variant, fastest
 
@@ -38,10 +38,12 @@ def variants(task: Task) -> tuple[Variant, ...]:
     """Its own formulation by both of its differentiations, and liegen's closed forms."""
     sf = _module("symbolic")
     forms = _variant(task, sf, FORMS, lambda given: _closed(task, sf, given))
-    if not (task.published and task.name in FORMULAS):
+    if not (task.published and task.function.name in FORMULAS):
         return (forms,)
     own = [
-        _variant(task, sf, note, lambda given, how=how: _derived(task, sf, how, given))
+        _variant(
+            task, sf, note, lambda given, how=how: finished(task, _derived(task, sf, how, given), sf.Matrix)
+        )
         for note, how in JACOBIANS.items()
     ]
     return (*own, forms)
@@ -101,7 +103,7 @@ def _derived(task: Task, sf: Any, how: str, given: Mapping[str, Any]) -> Rows:
     graph = task.function.graph
     derive = getattr(_module("jacobian_helpers"), how)
     elements = {p.name: _lifted(sf, p.manifold.form, list(given[p.name])) for p in graph.parameters}
-    result = FORMULAS[task.name](**elements)
+    result = FORMULAS[task.function.name](**elements)
     ((name, _),) = graph.outputs
     found: dict[str, Any] = {name: [[entry] for part in result for entry in part.to_storage()]}
     for p in graph.parameters:

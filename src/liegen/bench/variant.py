@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeVar
 
 from liegen.define import Function
+from liegen.kernel import Kernel
 from liegen.program import Port
 
 AnyFunction = Function[..., Any]
@@ -70,24 +72,34 @@ class Missing:
 
 @dataclass(frozen=True)
 class Task:
-    """A function to time. ``published`` ones have formulas of the peers under the same name."""
+    """A function to time. ``published`` ones have formulas of the peers under the same name.
+
+    ``terms`` derives its Gauss-Newton terms, which are then timed instead of its Jacobians.
+    """
 
     function: AnyFunction
     published: bool = False
-    name: str = field(init=False)
+    terms: Callable[[], Kernel] | None = None
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "name", self.function.name)
+    @cached_property
+    def kernel(self) -> Kernel:
+        """What is timed: value and Jacobians, or the terms."""
+        return self.terms() if self.terms else self.function.kernel
+
+    @property
+    def name(self) -> str:
+        """The kernel's name."""
+        return self.kernel.name
 
     @property
     def inputs(self) -> tuple[Port, ...]:
         """All arguments, in the order of ``a``."""
-        return self.function.kernel.jacobians.inputs
+        return self.kernel.jacobians.inputs
 
     @property
     def outputs(self) -> tuple[Port, ...]:
-        """The outputs, then the Jacobians, in the order of ``b``."""
-        return self.function.kernel.jacobians.outputs
+        """The outputs, then the Jacobians, or the terms, in the order of ``b``."""
+        return self.kernel.jacobians.outputs
 
 
 #: Generates the variants of one peer; raises AbsentError where that cannot be. Empty: it has no such formula.

@@ -11,7 +11,7 @@ from typing import Any
 from liegen.algebra import Algebra
 from liegen.manifolds import ManifoldForm
 
-from .programs import EIGEN_OPTIONS, FORMS, Rows, closed_forms, eigen_wrapper, prototype
+from .programs import EIGEN_OPTIONS, FORMS, Rows, closed_forms, eigen_wrapper, finished, prototype
 from .variant import AbsentError, Task, Variant, fastest
 from .wrenfold_formulas import FORMULAS
 
@@ -33,12 +33,22 @@ def variants(task: Task) -> tuple[Variant, ...]:
     """Its own formulation by the chain rule and by first-order retraction, and liegen's closed forms."""
     sym = _module("sym")
     forms = _variant(task, sym, FORMS, lambda s, given: _closed(task, s, given))
-    if not (task.published and task.name in FORMULAS):
+    if not (task.published and task.function.name in FORMULAS):
         return (forms,)
-    formula = FORMULAS[task.name]
+    formula = FORMULAS[task.function.name]
     return (
-        _variant(task, sym, "chain rule", lambda s, given: _chain(task, s, formula, given)),
-        _variant(task, sym, "first order", lambda s, given: _first_order(task, s, formula, given)),
+        _variant(
+            task,
+            sym,
+            "chain rule",
+            lambda s, given: finished(task, _chain(task, s, formula, given), s.matrix),
+        ),
+        _variant(
+            task,
+            sym,
+            "first order",
+            lambda s, given: finished(task, _first_order(task, s, formula, given), s.matrix),
+        ),
         forms,
     )
 

@@ -93,4 +93,4 @@ class Sim2Form(SimilarityForm):
 
     def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
         turn = self.rotation.draw_tangent(source, angle, offset)
-        return (*source.vector(2, offset), *turn, self.draw_log_scale(source, offset))
+        return (*source.vector(2, offset), *turn, self.draw_log_scale(source, angle, offset))

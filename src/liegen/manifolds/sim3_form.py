@@ -166,4 +166,4 @@ class Sim3Form(SimilarityForm):
 
     def draw_tangent(self, source: Source, angle: float, offset: float | None) -> Sequence[float]:
         turn = self.rotation.draw_tangent(source, angle, offset)
-        return (*turn, *source.vector(3, offset), self.draw_log_scale(source, offset))
+        return (*turn, *source.vector(3, offset), self.draw_log_scale(source, angle, offset))

@@ -19,6 +19,9 @@ LOG_SCALES = (
       for side in (1 - 1e-9, -1 - 1e-9)),
 )  # fmt: skip
 
+#: Largest logarithm of a scale but for these.
+MOST = 3.0
+
 
 class SimilarityForm(GroupForm):
     """Stored rotation, translation, scale; the tangent ends with the logarithm of the scale."""
@@ -115,9 +118,13 @@ class SimilarityForm(GroupForm):
         moved = source.vector(self.space, spread=spread)
         return (*self.rotation.draw(source, spread), *moved, 2.0 ** source.uniform(-2, 2))
 
-    def draw_log_scale(self, source: Source, offset: float | None) -> float:
-        """Any scale, half of the time one at which digits get lost elsewhere; 1 where nothing is to move."""
+    def draw_log_scale(self, source: Source, angle: float, offset: float | None) -> float:
+        """Any scale, half of the time one at which digits get lost elsewhere; 1 where nothing is to move.
+
+        Beyond half a turn scales of e^4.5 are left out: terms of exp's Jacobian are twenty times its entries.
+        """
         if offset == 0:
             return 0.0
         k = int(source.uniform(0, 2 * len(LOG_SCALES)))
-        return LOG_SCALES[k] if k < len(LOG_SCALES) else source.uniform(-3, 3)
+        special = LOG_SCALES[k] if k < len(LOG_SCALES) else source.uniform(-MOST, MOST)
+        return special if angle <= math.pi or abs(special) <= MOST else source.uniform(-MOST, MOST)
