@@ -4,6 +4,9 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 README = (Path(__file__).resolve().parents[1] / "README.md").read_text(encoding="utf-8")
 
@@ -13,7 +16,7 @@ def blocks(language: str) -> list[str]:
 
 
 def test_the_example(tmp_path: Path) -> None:
-    formula, use = blocks("python")
+    formula, use, _ = blocks("python")
     (tmp_path / "my_factors.py").write_text(formula)
 
     def liegen(*arguments: str) -> str:
@@ -22,8 +25,8 @@ def test_the_example(tmp_path: Path) -> None:
 
     explained, verified = blocks("text")
     assert liegen("explain", "lever_arm_range", "my_factors.py").startswith(explained.rstrip())
-    titles = verified.splitlines()[0].split()
-    assert liegen("verify", "my_factors.py", "--samples", "12").splitlines()[0].split() == titles
+    said, shown = liegen("verify", "my_factors.py", "--samples", "12").splitlines(), verified.splitlines()
+    assert said[0].split() == shown[0].split()
     liegen("generate", "my_factors.py", "-o", "out")
     shapes = "\nprint(J.res.shape, J.res_D_T_WB.shape, J.res_D_lever.shape)"
     printed = subprocess.run(
@@ -34,3 +37,14 @@ def test_the_example(tmp_path: Path) -> None:
     emitted = re.sub(r"\s+", " ", (tmp_path / "out/c/lever_arm_range.h").read_text())
     plain = emitted.replace("MY_FACTORS_GEN_RESTRICT ", "").replace("( ", "(")
     assert declared in plain
+
+
+def test_compiled_factors() -> None:
+    *_, compiled = blocks("python")
+    names: dict[str, Any] = {}
+    exec(compiled, names)
+    poses = np.zeros((4, 7))
+    poses[:, 3], poses[:, 4] = 1, [0, 1, 2, 4]
+    z = np.array([0, 0, 0, 1, 1, 0, 0.0])
+    residuals = names["edges"](poses, poses, z=z, sqrt_info=2 * np.eye(6))
+    np.testing.assert_allclose(residuals[:, 3], [0, 0, 2])
