@@ -67,19 +67,19 @@ class RForm(GroupForm):
 
 
 def scaled_length(v: Coords) -> tuple[Vector, Scalar, Scalar]:
-    """(w, |w|, k) with w = k v and k a power of two that keeps |w|^2 from under- and overflow."""
+    """(w, |w|, 1/k) with w = k v and k a power of two that keeps |w|^2 from under- and overflow."""
     square = dot(v, v)
-    k = select(lt(square, _TINY), _SHIFT, select(lt(_HUGE, square), 1 / _SHIFT, 1.0))
-    w = scale(k, v)
-    return w, sqrt(dot(w, w)), k
+    small, large = lt(square, _TINY), lt(_HUGE, square)
+    w = scale(select(small, _SHIFT, select(large, 1 / _SHIFT, 1.0)), v)
+    return w, sqrt(dot(w, w)), select(small, 1 / _SHIFT, select(large, _SHIFT, 1.0))
 
 
 def length(v: Coords) -> Scalar:
     """|v|, right to rounding for components from 1e-320 to 1e300."""
     if len(v) == 1:
         return fabs(v[0])
-    _, n, k = scaled_length(v)
-    return n / k
+    _, n, back = scaled_length(v)
+    return n * back
 
 
 def direction(v: Coords) -> Vector:
