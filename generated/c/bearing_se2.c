@@ -28,7 +28,7 @@
  *   res_D_x: 1 x 3, derivative of res by the tangent of x
  *   res_D_y: 1 x 3, derivative of res by the tangent of y
  *
- * Operations: 30 (residual only), 49 (with Jacobians)
+ * Operations: 30 (residual only), 51 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -94,28 +94,29 @@ int liegen_factors_bearing_se2(
     const double t2 = x_c * t0 + x_s * t1;
     const double t3 = x_c * t1 - x_s * t0;
     const double t4 = t2 * t2 + t3 * t3;
-    const double t5 = 8.452712498170644e+270 < t4 ? 2.409919865102884e-181 : 1.0;
-    const double t6 = t4 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t5;
-    const double t7 = t3 * t6;
-    const double t8 = t2 * t6;
-    const double t9 = sqrt(t8 * t8 + t7 * t7);
-    const double t10 = t7 / t9;
-    const double t11 = t8 / t9;
-    const double t12 = t9 / t6;
-    const double t13 = t10 / t12;
-    const double t14 = t11 / t12;
-    const double t15 = -t14;
-    const double t16 = x_c * t14 - x_s * t13;
-    const double t17 = x_c * t13 + x_s * t14;
-    res[0] = atan2(z_c * t10 - z_s * t11, z_c * t11 + z_s * t10);
+    const int t5 = t4 < 1.1830521861667747e-271;
+    const int t6 = 8.452712498170644e+270 < t4;
+    const double t7 = t5 ? 4.149515568880993e+180 : (t6 ? 2.409919865102884e-181 : 1.0);
+    const double t8 = t3 * t7;
+    const double t9 = t2 * t7;
+    const double t10 = sqrt(t9 * t9 + t8 * t8);
+    const double t11 = t8 / t10;
+    const double t12 = t9 / t10;
+    const double t13 = t6 ? -4.149515568880993e+180 : -1.0;
+    const double t14 = t10 * (t5 ? -2.409919865102884e-181 : t13);
+    const double t15 = t11 / t14;
+    const double t16 = t12 / t14;
+    const double t17 = x_s * t15 - x_c * t16;
+    const double t18 = x_c * t15 + x_s * t16;
+    res[0] = atan2(z_c * t11 - z_s * t12, z_c * t12 + z_s * t11);
     if (res_D_x != NULL) {
-        res_D_x[0] = t13;
-        res_D_x[1] = t15;
-        res_D_x[2] = t2 * t15 - t3 * t13;
+        res_D_x[0] = -t15;
+        res_D_x[1] = t16;
+        res_D_x[2] = t3 * t15 + t2 * t16;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = y_s * t16 - y_c * t17;
-        res_D_y[1] = y_s * t17 + y_c * t16;
+        res_D_y[0] = y_s * t17 + y_c * t18;
+        res_D_y[1] = y_c * t17 - y_s * t18;
         res_D_y[2] = 0.0;
     }
     return 0;

@@ -28,7 +28,7 @@
  *   res_D_x: 1 x 3, derivative of res by the tangent of x
  *   res_D_y: 1 x 3, derivative of res by the tangent of y
  *
- * Operations: 30 (residual only), 49 (with Jacobians)
+ * Operations: 30 (residual only), 51 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

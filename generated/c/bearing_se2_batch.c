@@ -74,18 +74,18 @@ static void block_jacobians(
     const lanes t11 = lanes_sqrt(t10 * t10 + t9 * t9);
     const lanes t12 = t9 / t11;
     const lanes t13 = t10 / t11;
-    const lanes t14 = t11 / t8;
-    const lanes t15 = t12 / t14;
-    const lanes t16 = t13 / t14;
-    const lanes t17 = -t16;
-    const lanes t18 = x_c * t16 - x_s * t15;
-    const lanes t19 = x_c * t15 + x_s * t16;
+    const lanes t14 = lanes_select(t6, lanes_of(-4.149515568880993e+180), lanes_of(-1.0));
+    const lanes t15 = t11 * lanes_select(t5, lanes_of(-2.409919865102884e-181), t14);
+    const lanes t16 = t12 / t15;
+    const lanes t17 = t13 / t15;
+    const lanes t18 = x_s * t16 - x_c * t17;
+    const lanes t19 = x_c * t16 + x_s * t17;
     res[0] = lanes_atan2(z_c * t12 - z_s * t13, z_c * t13 + z_s * t12);
-    res_D_x[0] = t15;
+    res_D_x[0] = -t16;
     res_D_x[1] = t17;
-    res_D_x[2] = t2 * t17 - t3 * t15;
-    res_D_y[0] = y_s * t18 - y_c * t19;
-    res_D_y[1] = y_s * t19 + y_c * t18;
+    res_D_x[2] = t3 * t16 + t2 * t17;
+    res_D_y[0] = y_s * t18 + y_c * t19;
+    res_D_y[1] = y_c * t18 - y_s * t19;
     res_D_y[2] = lanes_of(0.0);
 }
 

@@ -29,7 +29,7 @@
  *   res_D_x: 1 x 3, derivative of res by the tangent of x
  *   res_D_y: 1 x 2, derivative of res by the tangent of y
  *
- * Operations: 30 (residual only), 44 (with Jacobians)
+ * Operations: 30 (residual only), 45 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -90,29 +90,30 @@ int liegen_factors_bearing_se2_r2(
     const double z_s = z[1];
     const double t0 = y_x - x_x;
     const double t1 = y_y - x_y;
-    const double t2 = x_c * t0 + x_s * t1;
-    const double t3 = x_c * t1 - x_s * t0;
-    const double t4 = t2 * t2 + t3 * t3;
-    const double t5 = 8.452712498170644e+270 < t4 ? 2.409919865102884e-181 : 1.0;
-    const double t6 = t4 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t5;
-    const double t7 = t3 * t6;
-    const double t8 = t2 * t6;
-    const double t9 = sqrt(t8 * t8 + t7 * t7);
-    const double t10 = t7 / t9;
-    const double t11 = t8 / t9;
-    const double t12 = -t11;
-    const double t13 = t9 / t6;
-    const double t14 = t10 / t13;
-    const double t15 = t12 / t13;
-    res[0] = atan2(z_c * t10 + z_s * t12, z_c * t11 + z_s * t10);
+    const double t2 = x_c * t1 - x_s * t0;
+    const double t3 = x_c * t0 + x_s * t1;
+    const double t4 = t3 * t3 + t2 * t2;
+    const int t5 = 8.452712498170644e+270 < t4;
+    const int t6 = t4 < 1.1830521861667747e-271;
+    const double t7 = t6 ? 4.149515568880993e+180 : (t5 ? 2.409919865102884e-181 : 1.0);
+    const double t8 = t2 * t7;
+    const double t9 = t3 * t7;
+    const double t10 = t5 ? -4.149515568880993e+180 : -1.0;
+    const double t11 = sqrt(t9 * t9 + t8 * t8);
+    const double t12 = t11 * (t6 ? -2.409919865102884e-181 : t10);
+    const double t13 = t9 / t11;
+    const double t14 = t8 / t11;
+    const double t15 = t13 / t12;
+    const double t16 = t14 / t12;
+    res[0] = atan2(z_c * t14 - z_s * t13, z_c * t13 + z_s * t14);
     if (res_D_x != NULL) {
-        res_D_x[0] = t14;
+        res_D_x[0] = -t16;
         res_D_x[1] = t15;
-        res_D_x[2] = t2 * t15 - t3 * t14;
+        res_D_x[2] = t2 * t16 + t3 * t15;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = x_s * t15 - x_c * t14;
-        res_D_y[1] = -(x_c * t15 + x_s * t14);
+        res_D_y[0] = x_c * t16 + x_s * t15;
+        res_D_y[1] = x_s * t16 - x_c * t15;
     }
     return 0;
 }

@@ -29,7 +29,7 @@
  *   res_D_x: 1 x 3, derivative of res by the tangent of x
  *   res_D_y: 1 x 2, derivative of res by the tangent of y
  *
- * Operations: 30 (residual only), 44 (with Jacobians)
+ * Operations: 30 (residual only), 45 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

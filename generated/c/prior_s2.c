@@ -22,7 +22,7 @@
  *   res: 2, R2 (x, y)
  *   res_D_x: 2 x 2, derivative of res by the tangent of x
  *
- * Operations: 75 (residual only), 183 (with Jacobians)
+ * Operations: 77 (residual only), 185 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -62,16 +62,18 @@ int liegen_factors_prior_s2_res(
     const double t15 = t12 - x_x * (z_y * t11 + z_z * t13) + t14;
     const double t16 = (t3 ? 0.0 : x_x * t10) + x_y * t13 - x_z * t11;
     const double t17 = t16 * t16 + t15 * t15;
-    const double t18 = 8.452712498170644e+270 < t17 ? 2.409919865102884e-181 : 1.0;
-    const double t19 = t17 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t18;
-    const double t20 = t16 * t19;
-    const double t21 = t15 * t19;
-    const double t22 = sqrt(t20 * t20 + t21 * t21);
-    const double t23 = 0.0 < t22 ? t22 : 1.0;
-    const double t24 = t22 / t19;
-    const double t25 = atan2(t24, x_x * z_x + x_y * z_y + x_z * z_z);
-    res[0] = t25 * (0.0 < t24 ? t20 / t23 : 1.0);
-    res[1] = t25 * (t21 / t23);
+    const int t18 = t17 < 1.1830521861667747e-271;
+    const int t19 = 8.452712498170644e+270 < t17;
+    const double t20 = t18 ? 4.149515568880993e+180 : (t19 ? 2.409919865102884e-181 : 1.0);
+    const double t21 = t16 * t20;
+    const double t22 = t15 * t20;
+    const double t23 = sqrt(t21 * t21 + t22 * t22);
+    const double t24 = 0.0 < t23 ? t23 : 1.0;
+    const double t25 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
+    const double t26 = t23 * t25;
+    const double t27 = atan2(t26, x_x * z_x + x_y * z_y + x_z * z_z);
+    res[0] = t27 * (0.0 < t26 ? t21 / t24 : 1.0);
+    res[1] = t27 * (t22 / t24);
     return 0;
 }
 
@@ -109,51 +111,53 @@ int liegen_factors_prior_s2(
     const double t17 = t12 * t13 + x_y * t15 + x_z * t16;
     const double t18 = (t3 ? 0.0 : x_x * t14) + x_y * t11 - x_z * t10;
     const double t19 = t18 * t18 + t17 * t17;
-    const double t20 = 8.452712498170644e+270 < t19 ? 2.409919865102884e-181 : 1.0;
-    const double t21 = t19 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t20;
-    const double t22 = t18 * t21;
-    const double t23 = t17 * t21;
-    const double t24 = sqrt(t22 * t22 + t23 * t23);
-    const double t25 = 0.0 < t24 ? t24 : 1.0;
-    const double t26 = t24 / t21;
-    const int t27 = 0.0 < t26;
-    const double t28 = t27 ? t22 / t25 : 1.0;
-    const double t29 = x_x * z_x + x_y * z_y + x_z * z_z;
-    const double t30 = atan2(t26, t29);
-    const double t31 = t23 / t25;
-    const double t32 = (t27 ? t30 : 1.0) / (t27 ? t26 : (0.0 < t29 ? 1.0 : 0.0));
-    const double t33 = fabs(x_x);
-    const double t34 = fabs(x_y);
-    const double t35 = fabs(x_z);
-    const int t36 = t33 <= t34 && t33 <= t35;
-    const int t37 = t34 <= t35;
-    const double t38 = t37 ? -x_z : x_y;
-    const double t39 = t36 ? x_z : (t37 ? 0.0 : t13);
-    const double t40 = t36 ? x_y : (t37 ? t13 : 0.0);
-    const double t41 = 1.0 / sqrt((t36 ? 0.0 : t38 * t38) + t39 * t39 + t40 * t40);
-    const double t42 = t39 * t41;
-    const double t43 = t38 * t41;
-    const double t44 = t40 * t41;
-    const double t45 = t15 * t42 - (t36 ? 0.0 : t12 * t43) - t16 * t44;
-    const double t46 = (t36 ? 0.0 : (t3 ? 0.0 : t14 * t43)) + t11 * t42 + t10 * t44;
-    const double t47 = t32 * (t28 * t45 - t31 * t46);
-    const double t48 = t26 * ((t36 ? 0.0 : t6 * t43) - z_y * t42 + z_z * t44);
-    const double t49 = t29 * (t28 * t46 + t31 * t45) + t48;
-    const double t50 = x_y * t44 + x_z * t42;
-    const double t51 = (t36 ? 0.0 : x_z * t43) + x_x * t44;
-    const double t52 = x_x * t42 - (t36 ? 0.0 : x_y * t43);
-    const double t53 = t12 * t50 + t15 * t51 + t16 * t52;
-    const double t54 = t11 * t51 - (t3 ? 0.0 : t14 * t50) - t10 * t52;
-    const double t55 = t32 * (t28 * t53 - t31 * t54);
-    const double t56 = t26 * (z_x * t50 - z_y * t51 - z_z * t52);
-    const double t57 = t29 * (t28 * t54 + t31 * t53) + t56;
-    res[0] = t30 * t28;
-    res[1] = t30 * t31;
+    const int t20 = t19 < 1.1830521861667747e-271;
+    const int t21 = 8.452712498170644e+270 < t19;
+    const double t22 = t20 ? 4.149515568880993e+180 : (t21 ? 2.409919865102884e-181 : 1.0);
+    const double t23 = t18 * t22;
+    const double t24 = t17 * t22;
+    const double t25 = sqrt(t23 * t23 + t24 * t24);
+    const double t26 = 0.0 < t25 ? t25 : 1.0;
+    const double t27 = t20 ? 2.409919865102884e-181 : (t21 ? 4.149515568880993e+180 : 1.0);
+    const double t28 = t25 * t27;
+    const int t29 = 0.0 < t28;
+    const double t30 = t29 ? t23 / t26 : 1.0;
+    const double t31 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const double t32 = atan2(t28, t31);
+    const double t33 = t24 / t26;
+    const double t34 = (t29 ? t32 : 1.0) / (t29 ? t28 : (0.0 < t31 ? 1.0 : 0.0));
+    const double t35 = fabs(x_x);
+    const double t36 = fabs(x_y);
+    const double t37 = fabs(x_z);
+    const int t38 = t35 <= t36 && t35 <= t37;
+    const int t39 = t36 <= t37;
+    const double t40 = t39 ? -x_z : x_y;
+    const double t41 = t38 ? x_z : (t39 ? 0.0 : t13);
+    const double t42 = t38 ? x_y : (t39 ? t13 : 0.0);
+    const double t43 = 1.0 / sqrt((t38 ? 0.0 : t40 * t40) + t41 * t41 + t42 * t42);
+    const double t44 = t41 * t43;
+    const double t45 = t40 * t43;
+    const double t46 = t42 * t43;
+    const double t47 = t15 * t44 - (t38 ? 0.0 : t12 * t45) - t16 * t46;
+    const double t48 = (t38 ? 0.0 : (t3 ? 0.0 : t14 * t45)) + t11 * t44 + t10 * t46;
+    const double t49 = t34 * (t30 * t47 - t33 * t48);
+    const double t50 = t28 * ((t38 ? 0.0 : t6 * t45) - z_y * t44 + z_z * t46);
+    const double t51 = t31 * (t30 * t48 + t33 * t47) + t50;
+    const double t52 = x_y * t46 + x_z * t44;
+    const double t53 = (t38 ? 0.0 : x_z * t45) + x_x * t46;
+    const double t54 = x_x * t44 - (t38 ? 0.0 : x_y * t45);
+    const double t55 = t12 * t52 + t15 * t53 + t16 * t54;
+    const double t56 = t11 * t53 - (t3 ? 0.0 : t14 * t52) - t10 * t54;
+    const double t57 = t34 * (t30 * t55 - t33 * t56);
+    const double t58 = t28 * (z_x * t52 - z_y * t53 - z_z * t54);
+    const double t59 = t31 * (t30 * t56 + t33 * t55) + t58;
+    res[0] = t32 * t30;
+    res[1] = t32 * t33;
     if (res_D_x != NULL) {
-        res_D_x[0] = t28 * t49 - t31 * t47;
-        res_D_x[1] = t28 * t57 - t31 * t55;
-        res_D_x[2] = t31 * t49 + t28 * t47;
-        res_D_x[3] = t31 * t57 + t28 * t55;
+        res_D_x[0] = t30 * t51 - t33 * t49;
+        res_D_x[1] = t30 * t59 - t33 * t57;
+        res_D_x[2] = t33 * t51 + t30 * t49;
+        res_D_x[3] = t33 * t59 + t30 * t57;
     }
     return 0;
 }

@@ -22,7 +22,7 @@
  *   res: 2, R2 (x, y)
  *   res_D_x: 2 x 2, derivative of res by the tangent of x
  *
- * Operations: 76 (residual only), 123 (with Jacobians)
+ * Operations: 77 (residual only), 125 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -62,16 +62,19 @@ int liegen_factors_prior_s2_gtsam_res(
     const double t15 = t12 - z_x * (x_y * t11 + x_z * t13) + t14;
     const double t16 = (t3 ? 0.0 : z_x * t10) + z_y * t13 - z_z * t11;
     const double t17 = t16 * t16 + t15 * t15;
-    const double t18 = 8.452712498170644e+270 < t17 ? -2.409919865102884e-181 : -1.0;
-    const double t19 = t17 < 1.1830521861667747e-271 ? -4.149515568880993e+180 : t18;
-    const double t20 = t16 * t19;
-    const double t21 = t15 * t19;
-    const double t22 = sqrt(t20 * t20 + t21 * t21);
-    const double t23 = 0.0 < t22 ? t22 : 1.0;
-    const double t24 = -(t22 / t19);
-    const double t25 = atan2(t24, x_x * z_x + x_y * z_y + x_z * z_z);
-    res[0] = t25 * (0.0 < t24 ? t20 / t23 : -1.0);
-    res[1] = t25 * (t21 / t23);
+    const int t18 = t17 < 1.1830521861667747e-271;
+    const int t19 = 8.452712498170644e+270 < t17;
+    const double t20 = t19 ? -2.409919865102884e-181 : -1.0;
+    const double t21 = t18 ? -4.149515568880993e+180 : t20;
+    const double t22 = t16 * t21;
+    const double t23 = t15 * t21;
+    const double t24 = sqrt(t22 * t22 + t23 * t23);
+    const double t25 = 0.0 < t24 ? t24 : 1.0;
+    const double t26 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
+    const double t27 = t24 * t26;
+    const double t28 = atan2(t27, x_x * z_x + x_y * z_y + x_z * z_z);
+    res[0] = t28 * (0.0 < t27 ? t22 / t25 : -1.0);
+    res[1] = t28 * (t23 / t25);
     return 0;
 }
 
@@ -107,37 +110,39 @@ int liegen_factors_prior_s2_gtsam(
     const double t15 = z_x * (x_y * t10 + x_z * t11) + t13 + t14;
     const double t16 = z_z * t10 - ((t3 ? 0.0 : z_x * t12) + z_y * t11);
     const double t17 = t16 * t16 + t15 * t15;
-    const double t18 = 8.452712498170644e+270 < t17 ? 2.409919865102884e-181 : 1.0;
-    const double t19 = t17 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t18;
-    const double t20 = t16 * t19;
-    const double t21 = t15 * t19;
-    const double t22 = sqrt(t20 * t20 + t21 * t21);
-    const double t23 = 0.0 < t22 ? t22 : 1.0;
-    const double t24 = t22 / t19;
-    const int t25 = 0.0 < t24;
-    const double t26 = t25 ? t20 / t23 : -1.0;
-    const double t27 = x_x * z_x + x_y * z_y + x_z * z_z;
-    const double t28 = atan2(t24, t27);
-    const double t29 = t21 / t23;
-    const double t30 = (t25 ? t28 : 1.0) / (t25 ? t24 : (0.0 < t27 ? 1.0 : 0.0));
-    const double t31 = x_z * x_z;
-    const double t32 = x_x * x_x;
-    const double t33 = x_y * x_y;
-    const double t34 = sqrt(t3 ? t33 + t31 : (t4 ? t31 + t32 : t33 + t32));
-    const double t35 = (t3 ? x_x : (t4 ? x_y : x_z)) / t34;
-    const double t36 = t16 * t35;
-    const double t37 = t27 - t15 * t35;
-    const double t38 = t30 * (t26 * t36 - t29 * t37);
-    const double t39 = t27 * (t29 * t36 + t26 * t37) + t16 * t24;
-    const double t40 = t27 * (t27 * t29) + t15 * t24;
-    const double t41 = t30 * (t27 * t26);
-    res[0] = t28 * t26;
-    res[1] = t28 * t29;
+    const int t18 = t17 < 1.1830521861667747e-271;
+    const int t19 = 8.452712498170644e+270 < t17;
+    const double t20 = t18 ? 4.149515568880993e+180 : (t19 ? 2.409919865102884e-181 : 1.0);
+    const double t21 = t16 * t20;
+    const double t22 = t15 * t20;
+    const double t23 = sqrt(t21 * t21 + t22 * t22);
+    const double t24 = 0.0 < t23 ? t23 : 1.0;
+    const double t25 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
+    const double t26 = t23 * t25;
+    const int t27 = 0.0 < t26;
+    const double t28 = t27 ? t21 / t24 : -1.0;
+    const double t29 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const double t30 = atan2(t26, t29);
+    const double t31 = t22 / t24;
+    const double t32 = (t27 ? t30 : 1.0) / (t27 ? t26 : (0.0 < t29 ? 1.0 : 0.0));
+    const double t33 = x_z * x_z;
+    const double t34 = x_x * x_x;
+    const double t35 = x_y * x_y;
+    const double t36 = sqrt(t3 ? t35 + t33 : (t4 ? t33 + t34 : t35 + t34));
+    const double t37 = (t3 ? x_x : (t4 ? x_y : x_z)) / t36;
+    const double t38 = t16 * t37;
+    const double t39 = t29 - t15 * t37;
+    const double t40 = t32 * (t28 * t38 - t31 * t39);
+    const double t41 = t29 * (t31 * t38 + t28 * t39) + t16 * t26;
+    const double t42 = t29 * (t29 * t31) + t15 * t26;
+    const double t43 = t32 * (t29 * t28);
+    res[0] = t30 * t28;
+    res[1] = t30 * t31;
     if (res_D_x != NULL) {
-        res_D_x[0] = t26 * t39 - t29 * t38;
-        res_D_x[1] = t26 * t40 - t29 * t41;
-        res_D_x[2] = t29 * t39 + t26 * t38;
-        res_D_x[3] = t29 * t40 + t26 * t41;
+        res_D_x[0] = t28 * t41 - t31 * t40;
+        res_D_x[1] = t28 * t42 - t31 * t43;
+        res_D_x[2] = t31 * t41 + t28 * t40;
+        res_D_x[3] = t31 * t42 + t28 * t43;
     }
     return 0;
 }

@@ -49,10 +49,11 @@ static void block_value(
     const lanes t25 = t16 * t23;
     const lanes t26 = lanes_sqrt(t24 * t24 + t25 * t25);
     const lanes t27 = lanes_select(0.0 < t26, t26, lanes_of(1.0));
-    const lanes t28 = -(t26 / t23);
-    const lanes t29 = lanes_atan2(t28, x_x * z_x + x_y * z_y + x_z * z_z);
-    res[0] = t29 * lanes_select(0.0 < t28, t24 / t27, lanes_of(-1.0));
-    res[1] = t29 * (t25 / t27);
+    const lanes t28 = lanes_select(t21, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t29 = t26 * lanes_select(t20, lanes_of(2.409919865102884e-181), t28);
+    const lanes t30 = lanes_atan2(t29, x_x * z_x + x_y * z_y + x_z * z_z);
+    res[0] = t30 * lanes_select(0.0 < t29, t24 / t27, lanes_of(-1.0));
+    res[1] = t30 * (t25 / t27);
 }
 
 /* Value and Jacobians of a block. */
@@ -96,33 +97,34 @@ static void block_jacobians(
     const lanes t25 = t16 * t23;
     const lanes t26 = lanes_sqrt(t24 * t24 + t25 * t25);
     const lanes t27 = lanes_select(0.0 < t26, t26, lanes_of(1.0));
-    const lanes t28 = t26 / t23;
-    const lanes_mask t29 = 0.0 < t28;
-    const lanes t30 = lanes_select(t29, t24 / t27, lanes_of(-1.0));
-    const lanes t31 = x_x * z_x + x_y * z_y + x_z * z_z;
-    const lanes t32 = lanes_atan2(t28, t31);
-    const lanes t33 = t25 / t27;
-    const lanes t34 = lanes_select(t29, t32, lanes_of(1.0));
-    const lanes t35 = lanes_select(0.0 < t31, lanes_of(1.0), lanes_of(0.0));
-    const lanes t36 = t34 / lanes_select(t29, t28, t35);
-    const lanes t37 = x_z * x_z;
-    const lanes t38 = x_x * x_x;
-    const lanes t39 = x_y * x_y;
-    const lanes t40 = lanes_select(t4, t37 + t38, t39 + t38);
-    const lanes t41 = lanes_select(t3, x_x, lanes_select(t4, x_y, x_z));
-    const lanes t42 = t41 / lanes_sqrt(lanes_select(t3, t39 + t37, t40));
-    const lanes t43 = t18 * t42;
-    const lanes t44 = t31 - t16 * t42;
-    const lanes t45 = t36 * (t30 * t43 - t33 * t44);
-    const lanes t46 = t31 * (t33 * t43 + t30 * t44) + t18 * t28;
-    const lanes t47 = t31 * (t31 * t33) + t16 * t28;
-    const lanes t48 = t36 * (t31 * t30);
-    res[0] = t32 * t30;
-    res[1] = t32 * t33;
-    res_D_x[0] = t30 * t46 - t33 * t45;
-    res_D_x[1] = t30 * t47 - t33 * t48;
-    res_D_x[2] = t33 * t46 + t30 * t45;
-    res_D_x[3] = t33 * t47 + t30 * t48;
+    const lanes t28 = lanes_select(t21, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t29 = t26 * lanes_select(t20, lanes_of(2.409919865102884e-181), t28);
+    const lanes_mask t30 = 0.0 < t29;
+    const lanes t31 = lanes_select(t30, t24 / t27, lanes_of(-1.0));
+    const lanes t32 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const lanes t33 = lanes_atan2(t29, t32);
+    const lanes t34 = t25 / t27;
+    const lanes t35 = lanes_select(t30, t33, lanes_of(1.0));
+    const lanes t36 = lanes_select(0.0 < t32, lanes_of(1.0), lanes_of(0.0));
+    const lanes t37 = t35 / lanes_select(t30, t29, t36);
+    const lanes t38 = x_z * x_z;
+    const lanes t39 = x_x * x_x;
+    const lanes t40 = x_y * x_y;
+    const lanes t41 = lanes_select(t4, t38 + t39, t40 + t39);
+    const lanes t42 = lanes_select(t3, x_x, lanes_select(t4, x_y, x_z));
+    const lanes t43 = t42 / lanes_sqrt(lanes_select(t3, t40 + t38, t41));
+    const lanes t44 = t18 * t43;
+    const lanes t45 = t32 - t16 * t43;
+    const lanes t46 = t37 * (t31 * t44 - t34 * t45);
+    const lanes t47 = t32 * (t34 * t44 + t31 * t45) + t18 * t29;
+    const lanes t48 = t32 * (t32 * t34) + t16 * t29;
+    const lanes t49 = t37 * (t32 * t31);
+    res[0] = t33 * t31;
+    res[1] = t33 * t34;
+    res_D_x[0] = t31 * t47 - t34 * t46;
+    res_D_x[1] = t31 * t48 - t34 * t49;
+    res_D_x[2] = t34 * t47 + t31 * t46;
+    res_D_x[3] = t34 * t48 + t31 * t49;
 }
 
 int liegen_factors_prior_s2_gtsam_batch(

@@ -28,7 +28,7 @@
  *   res_D_x: 1 x 2, derivative of res by the tangent of x
  *   res_D_y: 1 x 2, derivative of res by the tangent of y
  *
- * Operations: 17 (residual only), 23 (with Jacobians)
+ * Operations: 19 (residual only), 25 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -53,11 +53,13 @@ int liegen_factors_range_r2_res(
     const double t0 = y_x - x_x;
     const double t1 = y_y - x_y;
     const double t2 = t0 * t0 + t1 * t1;
-    const double t3 = 8.452712498170644e+270 < t2 ? 2.409919865102884e-181 : 1.0;
-    const double t4 = t2 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t3;
-    const double t5 = t0 * t4;
-    const double t6 = t1 * t4;
-    res[0] = sqrt(t5 * t5 + t6 * t6) / t4 - z_0;
+    const int t3 = t2 < 1.1830521861667747e-271;
+    const int t4 = 8.452712498170644e+270 < t2;
+    const double t5 = t3 ? 4.149515568880993e+180 : (t4 ? 2.409919865102884e-181 : 1.0);
+    const double t6 = t0 * t5;
+    const double t7 = t1 * t5;
+    const double t8 = t3 ? 2.409919865102884e-181 : (t4 ? 4.149515568880993e+180 : 1.0);
+    res[0] = sqrt(t6 * t6 + t7 * t7) * t8 - z_0;
     return 0;
 }
 
@@ -79,22 +81,24 @@ int liegen_factors_range_r2(
     const double t0 = y_x - x_x;
     const double t1 = y_y - x_y;
     const double t2 = t0 * t0 + t1 * t1;
-    const double t3 = 8.452712498170644e+270 < t2 ? 2.409919865102884e-181 : 1.0;
-    const double t4 = t2 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t3;
-    const double t5 = t0 * t4;
-    const double t6 = t1 * t4;
-    const double t7 = sqrt(t5 * t5 + t6 * t6);
-    const double t8 = 0.0 < t7 ? t7 : 1.0;
-    const double t9 = t5 / t8;
-    const double t10 = t6 / t8;
-    res[0] = t7 / t4 - z_0;
+    const int t3 = t2 < 1.1830521861667747e-271;
+    const int t4 = 8.452712498170644e+270 < t2;
+    const double t5 = t3 ? 4.149515568880993e+180 : (t4 ? 2.409919865102884e-181 : 1.0);
+    const double t6 = t0 * t5;
+    const double t7 = t1 * t5;
+    const double t8 = sqrt(t6 * t6 + t7 * t7);
+    const double t9 = t3 ? 2.409919865102884e-181 : (t4 ? 4.149515568880993e+180 : 1.0);
+    const double t10 = 0.0 < t8 ? t8 : 1.0;
+    const double t11 = t6 / t10;
+    const double t12 = t7 / t10;
+    res[0] = t8 * t9 - z_0;
     if (res_D_x != NULL) {
-        res_D_x[0] = -t9;
-        res_D_x[1] = -t10;
+        res_D_x[0] = -t11;
+        res_D_x[1] = -t12;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = t9;
-        res_D_y[1] = t10;
+        res_D_y[0] = t11;
+        res_D_y[1] = t12;
     }
     return 0;
 }

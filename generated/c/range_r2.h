@@ -28,7 +28,7 @@
  *   res_D_x: 1 x 2, derivative of res by the tangent of x
  *   res_D_y: 1 x 2, derivative of res by the tangent of y
  *
- * Operations: 17 (residual only), 23 (with Jacobians)
+ * Operations: 19 (residual only), 25 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

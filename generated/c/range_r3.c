@@ -28,7 +28,7 @@
  *   res_D_x: 1 x 3, derivative of res by the tangent of x
  *   res_D_y: 1 x 3, derivative of res by the tangent of y
  *
- * Operations: 23 (residual only), 32 (with Jacobians)
+ * Operations: 25 (residual only), 34 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -56,12 +56,14 @@ int liegen_factors_range_r3_res(
     const double t1 = y_y - x_y;
     const double t2 = y_z - x_z;
     const double t3 = t0 * t0 + t1 * t1 + t2 * t2;
-    const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
-    const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    res[0] = sqrt(t6 * t6 + t7 * t7 + t8 * t8) / t5 - z_0;
+    const int t4 = t3 < 1.1830521861667747e-271;
+    const int t5 = 8.452712498170644e+270 < t3;
+    const double t6 = t4 ? 4.149515568880993e+180 : (t5 ? 2.409919865102884e-181 : 1.0);
+    const double t7 = t0 * t6;
+    const double t8 = t1 * t6;
+    const double t9 = t2 * t6;
+    const double t10 = t4 ? 2.409919865102884e-181 : (t5 ? 4.149515568880993e+180 : 1.0);
+    res[0] = sqrt(t7 * t7 + t8 * t8 + t9 * t9) * t10 - z_0;
     return 0;
 }
 
@@ -82,29 +84,31 @@ int liegen_factors_range_r3(
     const double y_y = y[1];
     const double y_z = y[2];
     const double z_0 = z[0];
-    const double t0 = y_x - x_x;
-    const double t1 = y_y - x_y;
+    const double t0 = y_y - x_y;
+    const double t1 = y_x - x_x;
     const double t2 = y_z - x_z;
-    const double t3 = t0 * t0 + t1 * t1 + t2 * t2;
-    const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
-    const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    const double t9 = sqrt(t6 * t6 + t7 * t7 + t8 * t8);
-    const double t10 = 1.0 / (0.0 < t9 ? t9 : 1.0);
-    const double t11 = t6 * t10;
-    const double t12 = t7 * t10;
-    const double t13 = t8 * t10;
-    res[0] = t9 / t5 - z_0;
+    const double t3 = t1 * t1 + t0 * t0 + t2 * t2;
+    const int t4 = 8.452712498170644e+270 < t3;
+    const int t5 = t3 < 1.1830521861667747e-271;
+    const double t6 = t5 ? 4.149515568880993e+180 : (t4 ? 2.409919865102884e-181 : 1.0);
+    const double t7 = t0 * t6;
+    const double t8 = t1 * t6;
+    const double t9 = t2 * t6;
+    const double t10 = t5 ? 2.409919865102884e-181 : (t4 ? 4.149515568880993e+180 : 1.0);
+    const double t11 = sqrt(t8 * t8 + t7 * t7 + t9 * t9);
+    const double t12 = 1.0 / (0.0 < t11 ? t11 : 1.0);
+    const double t13 = t9 * t12;
+    const double t14 = t7 * t12;
+    const double t15 = t8 * t12;
+    res[0] = t11 * t10 - z_0;
     if (res_D_x != NULL) {
-        res_D_x[0] = -t11;
-        res_D_x[1] = -t12;
+        res_D_x[0] = -t15;
+        res_D_x[1] = -t14;
         res_D_x[2] = -t13;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = t11;
-        res_D_y[1] = t12;
+        res_D_y[0] = t15;
+        res_D_y[1] = t14;
         res_D_y[2] = t13;
     }
     return 0;

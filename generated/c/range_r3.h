@@ -28,7 +28,7 @@
  *   res_D_x: 1 x 3, derivative of res by the tangent of x
  *   res_D_y: 1 x 3, derivative of res by the tangent of y
  *
- * Operations: 23 (residual only), 32 (with Jacobians)
+ * Operations: 25 (residual only), 34 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

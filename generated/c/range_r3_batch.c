@@ -34,7 +34,9 @@ static void block_value(
     const lanes t8 = t0 * t7;
     const lanes t9 = t1 * t7;
     const lanes t10 = t2 * t7;
-    res[0] = lanes_sqrt(t8 * t8 + t9 * t9 + t10 * t10) / t7 - z_0;
+    const lanes t11 = lanes_select(t5, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t12 = lanes_select(t4, lanes_of(2.409919865102884e-181), t11);
+    res[0] = lanes_sqrt(t8 * t8 + t9 * t9 + t10 * t10) * t12 - z_0;
 }
 
 /* Value and Jacobians of a block. */
@@ -53,29 +55,31 @@ static void block_jacobians(
     const lanes y_y = y[1];
     const lanes y_z = y[2];
     const lanes z_0 = z[0];
-    const lanes t0 = y_x - x_x;
-    const lanes t1 = y_y - x_y;
+    const lanes t0 = y_y - x_y;
+    const lanes t1 = y_x - x_x;
     const lanes t2 = y_z - x_z;
-    const lanes t3 = t0 * t0 + t1 * t1 + t2 * t2;
-    const lanes_mask t4 = t3 < 1.1830521861667747e-271;
-    const lanes_mask t5 = 8.452712498170644e+270 < t3;
-    const lanes t6 = lanes_select(t5, lanes_of(2.409919865102884e-181), lanes_of(1.0));
-    const lanes t7 = lanes_select(t4, lanes_of(4.149515568880993e+180), t6);
+    const lanes t3 = t1 * t1 + t0 * t0 + t2 * t2;
+    const lanes_mask t4 = 8.452712498170644e+270 < t3;
+    const lanes_mask t5 = t3 < 1.1830521861667747e-271;
+    const lanes t6 = lanes_select(t4, lanes_of(2.409919865102884e-181), lanes_of(1.0));
+    const lanes t7 = lanes_select(t5, lanes_of(4.149515568880993e+180), t6);
     const lanes t8 = t0 * t7;
     const lanes t9 = t1 * t7;
     const lanes t10 = t2 * t7;
-    const lanes t11 = lanes_sqrt(t8 * t8 + t9 * t9 + t10 * t10);
-    const lanes t12 = 1.0 / lanes_select(0.0 < t11, t11, lanes_of(1.0));
-    const lanes t13 = t8 * t12;
-    const lanes t14 = t9 * t12;
-    const lanes t15 = t10 * t12;
-    res[0] = t11 / t7 - z_0;
-    res_D_x[0] = -t13;
-    res_D_x[1] = -t14;
-    res_D_x[2] = -t15;
-    res_D_y[0] = t13;
-    res_D_y[1] = t14;
-    res_D_y[2] = t15;
+    const lanes t11 = lanes_select(t4, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t12 = lanes_sqrt(t9 * t9 + t8 * t8 + t10 * t10);
+    const lanes t13 = 1.0 / lanes_select(0.0 < t12, t12, lanes_of(1.0));
+    const lanes t14 = t10 * t13;
+    const lanes t15 = t8 * t13;
+    const lanes t16 = t9 * t13;
+    const lanes t17 = t12 * lanes_select(t5, lanes_of(2.409919865102884e-181), t11);
+    res[0] = t17 - z_0;
+    res_D_x[0] = -t16;
+    res_D_x[1] = -t15;
+    res_D_x[2] = -t14;
+    res_D_y[0] = t16;
+    res_D_y[1] = t15;
+    res_D_y[2] = t14;
 }
 
 int liegen_factors_range_r3_batch(

@@ -30,7 +30,9 @@ static void block_value(
     const lanes t6 = lanes_select(t3, lanes_of(4.149515568880993e+180), t5);
     const lanes t7 = t0 * t6;
     const lanes t8 = t1 * t6;
-    res[0] = lanes_sqrt(t7 * t7 + t8 * t8) / t6 - z_0;
+    const lanes t9 = lanes_select(t4, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t10 = lanes_select(t3, lanes_of(2.409919865102884e-181), t9);
+    res[0] = lanes_sqrt(t7 * t7 + t8 * t8) * t10 - z_0;
 }
 
 /* Value and Jacobians of a block. */
@@ -61,15 +63,17 @@ static void block_jacobians(
     const lanes t7 = t0 * t6;
     const lanes t8 = t1 * t6;
     const lanes t9 = lanes_sqrt(t7 * t7 + t8 * t8);
-    const lanes t10 = lanes_select(0.0 < t9, t9, lanes_of(1.0));
-    const lanes t11 = t7 / t10;
-    const lanes t12 = t8 / t10;
-    res[0] = t9 / t6 - z_0;
-    res_D_x[0] = -(x_c * t11 + x_s * t12);
-    res_D_x[1] = x_s * t11 - x_c * t12;
+    const lanes t10 = lanes_select(t4, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t11 = t9 * lanes_select(t3, lanes_of(2.409919865102884e-181), t10);
+    const lanes t12 = lanes_select(0.0 < t9, t9, lanes_of(1.0));
+    const lanes t13 = t7 / t12;
+    const lanes t14 = t8 / t12;
+    res[0] = t11 - z_0;
+    res_D_x[0] = -(x_c * t13 + x_s * t14);
+    res_D_x[1] = x_s * t13 - x_c * t14;
     res_D_x[2] = lanes_of(0.0);
-    res_D_y[0] = y_c * t11 + y_s * t12;
-    res_D_y[1] = y_c * t12 - y_s * t11;
+    res_D_y[0] = y_c * t13 + y_s * t14;
+    res_D_y[1] = y_c * t14 - y_s * t13;
     res_D_y[2] = lanes_of(0.0);
 }
 

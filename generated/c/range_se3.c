@@ -29,7 +29,7 @@
  *   res_D_x: 1 x 6, derivative of res by the tangent of x
  *   res_D_y: 1 x 6, derivative of res by the tangent of y
  *
- * Operations: 23 (residual only), 105 (with Jacobians)
+ * Operations: 25 (residual only), 107 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -57,12 +57,14 @@ int liegen_factors_range_se3_res(
     const double t1 = y_y - x_y;
     const double t2 = y_z - x_z;
     const double t3 = t0 * t0 + t1 * t1 + t2 * t2;
-    const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
-    const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    res[0] = sqrt(t6 * t6 + t7 * t7 + t8 * t8) / t5 - z_0;
+    const int t4 = t3 < 1.1830521861667747e-271;
+    const int t5 = 8.452712498170644e+270 < t3;
+    const double t6 = t4 ? 4.149515568880993e+180 : (t5 ? 2.409919865102884e-181 : 1.0);
+    const double t7 = t0 * t6;
+    const double t8 = t1 * t6;
+    const double t9 = t2 * t6;
+    const double t10 = t4 ? 2.409919865102884e-181 : (t5 ? 4.149515568880993e+180 : 1.0);
+    res[0] = sqrt(t7 * t7 + t8 * t8 + t9 * t9) * t10 - z_0;
     return 0;
 }
 
@@ -95,58 +97,60 @@ int liegen_factors_range_se3(
     const double t1 = x_y - y_y;
     const double t2 = x_z - y_z;
     const double t3 = t2 * t2 + (t0 * t0 + t1 * t1);
-    const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
-    const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    const double t9 = sqrt(t8 * t8 + (t6 * t6 + t7 * t7));
-    const double t10 = 1.0 / (0.0 < t9 ? t9 : 1.0);
-    const double t11 = t6 * t10;
-    const double t12 = x_qy * 2.0;
-    const double t13 = 1.0 - x_qy * t12;
-    const double t14 = 2.0 * x_qz;
-    const double t15 = x_qz * t14;
-    const double t16 = t7 * t10;
-    const double t17 = t12 * x_qx;
-    const double t18 = t14 * x_qw;
-    const double t19 = t8 * t10;
-    const double t20 = t14 * x_qx;
-    const double t21 = t12 * x_qw;
-    const double t22 = 2.0 * x_qx;
-    const double t23 = x_qx * t22;
-    const double t24 = t11 * (t17 - t18) + t16 * (1.0 - t15 - t23);
-    const double t25 = x_qy * t14;
-    const double t26 = x_qw * t22;
-    const double t27 = 2.0 * y_qz;
-    const double t28 = y_qz * t27;
-    const double t29 = 2.0 * y_qy;
-    const double t30 = 1.0 - y_qy * t29;
-    const double t31 = t29 * y_qx;
-    const double t32 = t27 * y_qw;
-    const double t33 = t29 * y_qw;
-    const double t34 = t27 * y_qx;
-    const double t35 = 2.0 * y_qx;
-    const double t36 = y_qx * t35;
-    const double t37 = t11 * (t32 - t31) + t16 * (t36 + (t28 - 1.0));
-    const double t38 = y_qy * t27;
-    const double t39 = y_qw * t35;
-    res[0] = t9 / t5 - z_0;
+    const int t4 = t3 < 1.1830521861667747e-271;
+    const int t5 = 8.452712498170644e+270 < t3;
+    const double t6 = t4 ? 4.149515568880993e+180 : (t5 ? 2.409919865102884e-181 : 1.0);
+    const double t7 = t0 * t6;
+    const double t8 = t1 * t6;
+    const double t9 = t2 * t6;
+    const double t10 = sqrt(t9 * t9 + (t7 * t7 + t8 * t8));
+    const double t11 = t4 ? 2.409919865102884e-181 : (t5 ? 4.149515568880993e+180 : 1.0);
+    const double t12 = 1.0 / (0.0 < t10 ? t10 : 1.0);
+    const double t13 = t7 * t12;
+    const double t14 = x_qy * 2.0;
+    const double t15 = 1.0 - x_qy * t14;
+    const double t16 = 2.0 * x_qz;
+    const double t17 = x_qz * t16;
+    const double t18 = t8 * t12;
+    const double t19 = t14 * x_qx;
+    const double t20 = t16 * x_qw;
+    const double t21 = t9 * t12;
+    const double t22 = t16 * x_qx;
+    const double t23 = t14 * x_qw;
+    const double t24 = 2.0 * x_qx;
+    const double t25 = x_qx * t24;
+    const double t26 = t13 * (t19 - t20) + t18 * (1.0 - t17 - t25);
+    const double t27 = x_qy * t16;
+    const double t28 = x_qw * t24;
+    const double t29 = 2.0 * y_qz;
+    const double t30 = y_qz * t29;
+    const double t31 = 2.0 * y_qy;
+    const double t32 = 1.0 - y_qy * t31;
+    const double t33 = t31 * y_qx;
+    const double t34 = t29 * y_qw;
+    const double t35 = t31 * y_qw;
+    const double t36 = t29 * y_qx;
+    const double t37 = 2.0 * y_qx;
+    const double t38 = y_qx * t37;
+    const double t39 = t13 * (t34 - t33) + t18 * (t38 + (t30 - 1.0));
+    const double t40 = y_qy * t29;
+    const double t41 = y_qw * t37;
+    res[0] = t10 * t11 - z_0;
     if (res_D_x != NULL) {
         res_D_x[0] = 0.0;
         res_D_x[1] = 0.0;
         res_D_x[2] = 0.0;
-        res_D_x[3] = t19 * (t20 - t21) + (t11 * (t13 - t15) + t16 * (t17 + t18));
-        res_D_x[4] = t19 * (t25 + t26) + t24;
-        res_D_x[5] = t19 * (t13 - t23) + (t11 * (t20 + t21) + t16 * (t25 - t26));
+        res_D_x[3] = t21 * (t22 - t23) + (t13 * (t15 - t17) + t18 * (t19 + t20));
+        res_D_x[4] = t21 * (t27 + t28) + t26;
+        res_D_x[5] = t21 * (t15 - t25) + (t13 * (t22 + t23) + t18 * (t27 - t28));
     }
     if (res_D_y != NULL) {
         res_D_y[0] = 0.0;
         res_D_y[1] = 0.0;
         res_D_y[2] = 0.0;
-        res_D_y[3] = t19 * (t33 - t34) + (t11 * (t28 - t30) - t16 * (t31 + t32));
-        res_D_y[4] = t37 - t19 * (t38 + t39);
-        res_D_y[5] = t19 * (t36 - t30) + (t16 * (t39 - t38) - t11 * (t34 + t33));
+        res_D_y[3] = t21 * (t35 - t36) + (t13 * (t30 - t32) - t18 * (t33 + t34));
+        res_D_y[4] = t39 - t21 * (t40 + t41);
+        res_D_y[5] = t21 * (t38 - t32) + (t18 * (t41 - t40) - t13 * (t36 + t35));
     }
     return 0;
 }

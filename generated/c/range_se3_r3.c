@@ -30,7 +30,7 @@
  *   res_D_x: 1 x 6, derivative of res by the tangent of x
  *   res_D_y: 1 x 3, derivative of res by the tangent of y
  *
- * Operations: 23 (residual only), 67 (with Jacobians)
+ * Operations: 25 (residual only), 69 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -58,12 +58,14 @@ int liegen_factors_range_se3_r3_res(
     const double t1 = y_y - x_y;
     const double t2 = y_z - x_z;
     const double t3 = t0 * t0 + t1 * t1 + t2 * t2;
-    const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
-    const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    res[0] = sqrt(t6 * t6 + t7 * t7 + t8 * t8) / t5 - z_0;
+    const int t4 = t3 < 1.1830521861667747e-271;
+    const int t5 = 8.452712498170644e+270 < t3;
+    const double t6 = t4 ? 4.149515568880993e+180 : (t5 ? 2.409919865102884e-181 : 1.0);
+    const double t7 = t0 * t6;
+    const double t8 = t1 * t6;
+    const double t9 = t2 * t6;
+    const double t10 = t4 ? 2.409919865102884e-181 : (t5 ? 4.149515568880993e+180 : 1.0);
+    res[0] = sqrt(t7 * t7 + t8 * t8 + t9 * t9) * t10 - z_0;
     return 0;
 }
 
@@ -92,42 +94,45 @@ int liegen_factors_range_se3_r3(
     const double t1 = x_y - y_y;
     const double t2 = x_z - y_z;
     const double t3 = t2 * t2 + (t0 * t0 + t1 * t1);
-    const double t4 = 8.452712498170644e+270 < t3 ? 2.409919865102884e-181 : 1.0;
-    const double t5 = t3 < 1.1830521861667747e-271 ? 4.149515568880993e+180 : t4;
-    const double t6 = t0 * t5;
-    const double t7 = t1 * t5;
-    const double t8 = t2 * t5;
-    const double t9 = sqrt(t8 * t8 + (t6 * t6 + t7 * t7));
-    const double t10 = -1.0 / (0.0 < t9 ? t9 : 1.0);
-    const double t11 = t6 * t10;
-    const double t12 = 2.0 * x_qz;
-    const double t13 = x_qz * t12;
-    const double t14 = x_qy * 2.0;
-    const double t15 = 1.0 - x_qy * t14;
-    const double t16 = t7 * t10;
-    const double t17 = t14 * x_qx;
-    const double t18 = t12 * x_qw;
-    const double t19 = t8 * t10;
-    const double t20 = t14 * x_qw;
-    const double t21 = t12 * x_qx;
-    const double t22 = 2.0 * x_qx;
-    const double t23 = x_qx * t22;
-    const double t24 = t11 * (t18 - t17) + t16 * (t23 + (t13 - 1.0));
-    const double t25 = x_qy * t12;
-    const double t26 = x_qw * t22;
-    res[0] = t9 / t5 - z_0;
+    const int t4 = t3 < 1.1830521861667747e-271;
+    const int t5 = 8.452712498170644e+270 < t3;
+    const double t6 = t5 ? -2.409919865102884e-181 : -1.0;
+    const double t7 = t4 ? -4.149515568880993e+180 : t6;
+    const double t8 = t0 * t7;
+    const double t9 = t1 * t7;
+    const double t10 = t2 * t7;
+    const double t11 = sqrt(t10 * t10 + (t8 * t8 + t9 * t9));
+    const double t12 = t4 ? 2.409919865102884e-181 : (t5 ? 4.149515568880993e+180 : 1.0);
+    const double t13 = 1.0 / (0.0 < t11 ? t11 : 1.0);
+    const double t14 = t8 * t13;
+    const double t15 = 2.0 * x_qz;
+    const double t16 = x_qz * t15;
+    const double t17 = x_qy * 2.0;
+    const double t18 = 1.0 - x_qy * t17;
+    const double t19 = t9 * t13;
+    const double t20 = t17 * x_qx;
+    const double t21 = t15 * x_qw;
+    const double t22 = t10 * t13;
+    const double t23 = t17 * x_qw;
+    const double t24 = t15 * x_qx;
+    const double t25 = 2.0 * x_qx;
+    const double t26 = x_qx * t25;
+    const double t27 = t14 * (t21 - t20) + t19 * (t26 + (t16 - 1.0));
+    const double t28 = x_qy * t15;
+    const double t29 = x_qw * t25;
+    res[0] = t11 * t12 - z_0;
     if (res_D_x != NULL) {
         res_D_x[0] = 0.0;
         res_D_x[1] = 0.0;
         res_D_x[2] = 0.0;
-        res_D_x[3] = t19 * (t20 - t21) + (t11 * (t13 - t15) - t16 * (t17 + t18));
-        res_D_x[4] = t24 - t19 * (t25 + t26);
-        res_D_x[5] = t19 * (t23 - t15) + (t16 * (t26 - t25) - t11 * (t21 + t20));
+        res_D_x[3] = t22 * (t23 - t24) + (t14 * (t16 - t18) - t19 * (t20 + t21));
+        res_D_x[4] = t27 - t22 * (t28 + t29);
+        res_D_x[5] = t22 * (t26 - t18) + (t19 * (t29 - t28) - t14 * (t24 + t23));
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = t11;
-        res_D_y[1] = t16;
-        res_D_y[2] = t19;
+        res_D_y[0] = t14;
+        res_D_y[1] = t19;
+        res_D_y[2] = t22;
     }
     return 0;
 }

@@ -30,7 +30,7 @@
  *   res_D_x: 1 x 6, derivative of res by the tangent of x
  *   res_D_y: 1 x 3, derivative of res by the tangent of y
  *
- * Operations: 23 (residual only), 67 (with Jacobians)
+ * Operations: 25 (residual only), 69 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -34,7 +34,9 @@ static void block_value(
     const lanes t8 = t0 * t7;
     const lanes t9 = t1 * t7;
     const lanes t10 = t2 * t7;
-    res[0] = lanes_sqrt(t8 * t8 + t9 * t9 + t10 * t10) / t7 - z_0;
+    const lanes t11 = lanes_select(t5, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t12 = lanes_select(t4, lanes_of(2.409919865102884e-181), t11);
+    res[0] = lanes_sqrt(t8 * t8 + t9 * t9 + t10 * t10) * t12 - z_0;
 }
 
 /* Value and Jacobians of a block. */
@@ -63,39 +65,41 @@ static void block_jacobians(
     const lanes t3 = t2 * t2 + (t0 * t0 + t1 * t1);
     const lanes_mask t4 = t3 < 1.1830521861667747e-271;
     const lanes_mask t5 = 8.452712498170644e+270 < t3;
-    const lanes t6 = lanes_select(t5, lanes_of(2.409919865102884e-181), lanes_of(1.0));
-    const lanes t7 = lanes_select(t4, lanes_of(4.149515568880993e+180), t6);
+    const lanes t6 = lanes_select(t5, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
+    const lanes t7 = lanes_select(t4, lanes_of(-4.149515568880993e+180), t6);
     const lanes t8 = t0 * t7;
     const lanes t9 = t1 * t7;
     const lanes t10 = t2 * t7;
     const lanes t11 = lanes_sqrt(t10 * t10 + (t8 * t8 + t9 * t9));
-    const lanes t12 = -1.0 / lanes_select(0.0 < t11, t11, lanes_of(1.0));
-    const lanes t13 = t8 * t12;
-    const lanes t14 = 2.0 * x_qz;
-    const lanes t15 = x_qz * t14;
-    const lanes t16 = x_qy * 2.0;
-    const lanes t17 = 1.0 - x_qy * t16;
-    const lanes t18 = t9 * t12;
-    const lanes t19 = t16 * x_qx;
-    const lanes t20 = t14 * x_qw;
-    const lanes t21 = t10 * t12;
+    const lanes t12 = lanes_select(t5, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t13 = t11 * lanes_select(t4, lanes_of(2.409919865102884e-181), t12);
+    const lanes t14 = 1.0 / lanes_select(0.0 < t11, t11, lanes_of(1.0));
+    const lanes t15 = t8 * t14;
+    const lanes t16 = 2.0 * x_qz;
+    const lanes t17 = x_qz * t16;
+    const lanes t18 = x_qy * 2.0;
+    const lanes t19 = 1.0 - x_qy * t18;
+    const lanes t20 = t9 * t14;
+    const lanes t21 = t18 * x_qx;
     const lanes t22 = t16 * x_qw;
-    const lanes t23 = t14 * x_qx;
-    const lanes t24 = 2.0 * x_qx;
-    const lanes t25 = x_qx * t24;
-    const lanes t26 = t13 * (t20 - t19) + t18 * (t25 + (t15 - 1.0));
-    const lanes t27 = x_qy * t14;
-    const lanes t28 = x_qw * t24;
-    res[0] = t11 / t7 - z_0;
+    const lanes t23 = t10 * t14;
+    const lanes t24 = t18 * x_qw;
+    const lanes t25 = t16 * x_qx;
+    const lanes t26 = 2.0 * x_qx;
+    const lanes t27 = x_qx * t26;
+    const lanes t28 = t15 * (t22 - t21) + t20 * (t27 + (t17 - 1.0));
+    const lanes t29 = x_qy * t16;
+    const lanes t30 = x_qw * t26;
+    res[0] = t13 - z_0;
     res_D_x[0] = lanes_of(0.0);
     res_D_x[1] = lanes_of(0.0);
     res_D_x[2] = lanes_of(0.0);
-    res_D_x[3] = t21 * (t22 - t23) + (t13 * (t15 - t17) - t18 * (t19 + t20));
-    res_D_x[4] = t26 - t21 * (t27 + t28);
-    res_D_x[5] = t21 * (t25 - t17) + (t18 * (t28 - t27) - t13 * (t23 + t22));
-    res_D_y[0] = t13;
-    res_D_y[1] = t18;
-    res_D_y[2] = t21;
+    res_D_x[3] = t23 * (t24 - t25) + (t15 * (t17 - t19) - t20 * (t21 + t22));
+    res_D_x[4] = t28 - t23 * (t29 + t30);
+    res_D_x[5] = t23 * (t27 - t19) + (t20 * (t30 - t29) - t15 * (t25 + t24));
+    res_D_y[0] = t15;
+    res_D_y[1] = t20;
+    res_D_y[2] = t23;
 }
 
 int liegen_factors_range_se3_r3_batch(

@@ -55,12 +55,12 @@
 # Shapes and units: at the top of each factor's file.
 #
 # Operations:
-#   bearing_se2: 30, with Jacobians 49
-#   bearing_se2_r2: 30, with Jacobians 44
-#   bearing_se3: 138, with Jacobians 377
-#   bearing_se3_gtsam: 137, with Jacobians 316
-#   bearing_se3_r3: 138, with Jacobians 324
-#   bearing_se3_r3_gtsam: 137, with Jacobians 265
+#   bearing_se2: 30, with Jacobians 51
+#   bearing_se2_r2: 30, with Jacobians 45
+#   bearing_se3: 140, with Jacobians 381
+#   bearing_se3_gtsam: 139, with Jacobians 319
+#   bearing_se3_r3: 140, with Jacobians 328
+#   bearing_se3_r3_gtsam: 139, with Jacobians 269
 #   between_r2: 4, with Jacobians 4
 #   between_r3: 6, with Jacobians 6
 #   between_se2: 53, with Jacobians 70
@@ -74,18 +74,18 @@
 #   sfm_cal3_s2: 52, with Jacobians 98
 #   prior_r2: 2, with Jacobians 2
 #   prior_r3: 3, with Jacobians 3
-#   prior_s2: 75, with Jacobians 183
-#   prior_s2_gtsam: 76, with Jacobians 123
+#   prior_s2: 77, with Jacobians 185
+#   prior_s2_gtsam: 77, with Jacobians 125
 #   prior_se2: 39, with Jacobians 47
 #   prior_se3: 150, with Jacobians 217
 #   prior_so2: 7, with Jacobians 7
 #   prior_so3: 61, with Jacobians 103
-#   range_r2: 17, with Jacobians 23
-#   range_r3: 23, with Jacobians 32
-#   range_se2: 17, with Jacobians 34
-#   range_se2_r2: 17, with Jacobians 28
-#   range_se3: 23, with Jacobians 105
-#   range_se3_r3: 23, with Jacobians 67
+#   range_r2: 19, with Jacobians 25
+#   range_r3: 25, with Jacobians 34
+#   range_se2: 19, with Jacobians 36
+#   range_se2_r2: 19, with Jacobians 30
+#   range_se3: 25, with Jacobians 107
+#   range_se3_r3: 25, with Jacobians 69
 #
 # Regenerate: liegen generate -o DIR
 #

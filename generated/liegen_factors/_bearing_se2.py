@@ -27,7 +27,7 @@
 #   res_D_x: 1 x 3, derivative of res by the tangent of x
 #   res_D_y: 1 x 3, derivative of res by the tangent of y
 #
-# Operations: 30 (residual only), 49 (with Jacobians)
+# Operations: 30 (residual only), 51 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -129,22 +129,24 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t2 = x_c * t0 + x_s * t1
     t3 = x_c * t1 - x_s * t0
     t4 = t2 * t2 + t3 * t3
-    t5 = np.where(8.452712498170644e+270 < t4, 2.409919865102884e-181, 1.0)
-    t6 = np.where(t4 < 1.1830521861667747e-271, 4.149515568880993e+180, t5)
-    t7 = t3 * t6
-    t8 = t2 * t6
-    t9 = np.sqrt(t8 * t8 + t7 * t7)
-    t10 = t7 / t9
-    t11 = t8 / t9
-    t12 = t9 / t6
-    t13 = t10 / t12
-    t14 = t11 / t12
-    t15 = -t14
-    t16 = x_c * t14 - x_s * t13
-    t17 = x_c * t13 + x_s * t14
-    res[0] = np.arctan2(z_c * t10 - z_s * t11, z_c * t11 + z_s * t10)
-    res_D_x[0, 0] = t13
-    res_D_x[0, 1] = t15
-    res_D_x[0, 2] = t2 * t15 - t3 * t13
-    res_D_y[0, 0] = y_s * t16 - y_c * t17
-    res_D_y[0, 1] = y_s * t17 + y_c * t16
+    t5 = t4 < 1.1830521861667747e-271
+    t6 = 8.452712498170644e+270 < t4
+    t7 = np.where(t6, 2.409919865102884e-181, 1.0)
+    t8 = np.where(t5, 4.149515568880993e+180, t7)
+    t9 = t3 * t8
+    t10 = t2 * t8
+    t11 = np.sqrt(t10 * t10 + t9 * t9)
+    t12 = t9 / t11
+    t13 = t10 / t11
+    t14 = np.where(t6, -4.149515568880993e+180, -1.0)
+    t15 = t11 * np.where(t5, -2.409919865102884e-181, t14)
+    t16 = t12 / t15
+    t17 = t13 / t15
+    t18 = x_s * t16 - x_c * t17
+    t19 = x_c * t16 + x_s * t17
+    res[0] = np.arctan2(z_c * t12 - z_s * t13, z_c * t13 + z_s * t12)
+    res_D_x[0, 0] = -t16
+    res_D_x[0, 1] = t17
+    res_D_x[0, 2] = t3 * t16 + t2 * t17
+    res_D_y[0, 0] = y_s * t18 + y_c * t19
+    res_D_y[0, 1] = y_c * t18 - y_s * t19

@@ -28,7 +28,7 @@
 #   res_D_x: 1 x 3, derivative of res by the tangent of x
 #   res_D_y: 1 x 2, derivative of res by the tangent of y
 #
-# Operations: 30 (residual only), 44 (with Jacobians)
+# Operations: 30 (residual only), 45 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -127,23 +127,25 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     z_c, z_s = z
     t0 = y_x - x_x
     t1 = y_y - x_y
-    t2 = x_c * t0 + x_s * t1
-    t3 = x_c * t1 - x_s * t0
-    t4 = t2 * t2 + t3 * t3
-    t5 = np.where(8.452712498170644e+270 < t4, 2.409919865102884e-181, 1.0)
-    t6 = np.where(t4 < 1.1830521861667747e-271, 4.149515568880993e+180, t5)
-    t7 = t3 * t6
-    t8 = t2 * t6
-    t9 = np.sqrt(t8 * t8 + t7 * t7)
-    t10 = t7 / t9
-    t11 = t8 / t9
-    t12 = -t11
-    t13 = t9 / t6
-    t14 = t10 / t13
-    t15 = t12 / t13
-    res[0] = np.arctan2(z_c * t10 + z_s * t12, z_c * t11 + z_s * t10)
-    res_D_x[0, 0] = t14
-    res_D_x[0, 1] = t15
-    res_D_x[0, 2] = t2 * t15 - t3 * t14
-    res_D_y[0, 0] = x_s * t15 - x_c * t14
-    res_D_y[0, 1] = -(x_c * t15 + x_s * t14)
+    t2 = x_c * t1 - x_s * t0
+    t3 = x_c * t0 + x_s * t1
+    t4 = t3 * t3 + t2 * t2
+    t5 = 8.452712498170644e+270 < t4
+    t6 = t4 < 1.1830521861667747e-271
+    t7 = np.where(t5, 2.409919865102884e-181, 1.0)
+    t8 = np.where(t6, 4.149515568880993e+180, t7)
+    t9 = t2 * t8
+    t10 = t3 * t8
+    t11 = np.where(t5, -4.149515568880993e+180, -1.0)
+    t12 = np.sqrt(t10 * t10 + t9 * t9)
+    t13 = t12 * np.where(t6, -2.409919865102884e-181, t11)
+    t14 = t10 / t12
+    t15 = t9 / t12
+    t16 = t14 / t13
+    t17 = t15 / t13
+    res[0] = np.arctan2(z_c * t15 - z_s * t14, z_c * t14 + z_s * t15)
+    res_D_x[0, 0] = -t17
+    res_D_x[0, 1] = t16
+    res_D_x[0, 2] = t2 * t17 + t3 * t16
+    res_D_y[0, 0] = x_c * t17 + x_s * t16
+    res_D_y[0, 1] = x_s * t17 - x_c * t16

@@ -21,7 +21,7 @@
 #   res: 2, R2 (x, y)
 #   res_D_x: 2 x 2, derivative of res by the tangent of x
 #
-# Operations: 75 (residual only), 183 (with Jacobians)
+# Operations: 77 (residual only), 185 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -106,16 +106,19 @@ def _value(x: Array, z: Array, res: Array) -> None:
     t16 = t13 - x_x * (z_y * t12 + z_z * t14) + t15
     t17 = np.where(t3, 0.0, x_x * t11) + x_y * t14 - x_z * t12
     t18 = t17 * t17 + t16 * t16
-    t19 = np.where(8.452712498170644e+270 < t18, 2.409919865102884e-181, 1.0)
-    t20 = np.where(t18 < 1.1830521861667747e-271, 4.149515568880993e+180, t19)
-    t21 = t17 * t20
-    t22 = t16 * t20
-    t23 = np.sqrt(t21 * t21 + t22 * t22)
-    t24 = np.where(0.0 < t23, t23, 1.0)
-    t25 = t23 / t20
-    t26 = np.arctan2(t25, x_x * z_x + x_y * z_y + x_z * z_z)
-    res[0] = t26 * np.where(0.0 < t25, t21 / t24, 1.0)
-    res[1] = t26 * (t22 / t24)
+    t19 = t18 < 1.1830521861667747e-271
+    t20 = 8.452712498170644e+270 < t18
+    t21 = np.where(t20, 2.409919865102884e-181, 1.0)
+    t22 = np.where(t19, 4.149515568880993e+180, t21)
+    t23 = t17 * t22
+    t24 = t16 * t22
+    t25 = np.sqrt(t23 * t23 + t24 * t24)
+    t26 = np.where(0.0 < t25, t25, 1.0)
+    t27 = np.where(t20, 4.149515568880993e+180, 1.0)
+    t28 = t25 * np.where(t19, 2.409919865102884e-181, t27)
+    t29 = np.arctan2(t28, x_x * z_x + x_y * z_y + x_z * z_z)
+    res[0] = t29 * np.where(0.0 < t28, t23 / t26, 1.0)
+    res[1] = t29 * (t24 / t26)
 
 
 def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
@@ -142,50 +145,53 @@ def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
     t18 = t13 * t14 + x_y * t16 + x_z * t17
     t19 = np.where(t3, 0.0, x_x * t15) + x_y * t12 - x_z * t11
     t20 = t19 * t19 + t18 * t18
-    t21 = np.where(8.452712498170644e+270 < t20, 2.409919865102884e-181, 1.0)
-    t22 = np.where(t20 < 1.1830521861667747e-271, 4.149515568880993e+180, t21)
-    t23 = t19 * t22
-    t24 = t18 * t22
-    t25 = np.sqrt(t23 * t23 + t24 * t24)
-    t26 = np.where(0.0 < t25, t25, 1.0)
-    t27 = t25 / t22
-    t28 = 0.0 < t27
-    t29 = np.where(t28, t23 / t26, 1.0)
-    t30 = x_x * z_x + x_y * z_y + x_z * z_z
-    t31 = np.arctan2(t27, t30)
-    t32 = t24 / t26
-    t33 = np.where(t28, t27, np.where(0.0 < t30, 1.0, 0.0))
-    t34 = np.where(t28, t31, 1.0) / t33
-    t35 = np.abs(x_x)
-    t36 = np.abs(x_y)
-    t37 = np.abs(x_z)
-    t38 = (t35 <= t36) & (t35 <= t37)
-    t39 = t36 <= t37
-    t40 = np.where(t39, -x_z, x_y)
-    t41 = np.where(t38, x_z, np.where(t39, 0.0, t14))
-    t42 = np.where(t38, x_y, np.where(t39, t14, 0.0))
-    t43 = np.sqrt(np.where(t38, 0.0, t40 * t40) + t41 * t41 + t42 * t42)
-    t44 = 1.0 / t43
-    t45 = t41 * t44
-    t46 = t40 * t44
-    t47 = t42 * t44
-    t48 = t16 * t45 - np.where(t38, 0.0, t13 * t46) - t17 * t47
-    t49 = np.where(t38, 0.0, np.where(t3, 0.0, t15 * t46)) + t12 * t45
-    t50 = t49 + t11 * t47
-    t51 = t34 * (t29 * t48 - t32 * t50)
-    t52 = t27 * (np.where(t38, 0.0, t6 * t46) - z_y * t45 + z_z * t47)
-    t53 = t30 * (t29 * t50 + t32 * t48) + t52
-    t54 = x_y * t47 + x_z * t45
-    t55 = np.where(t38, 0.0, x_z * t46) + x_x * t47
-    t56 = x_x * t45 - np.where(t38, 0.0, x_y * t46)
-    t57 = t13 * t54 + t16 * t55 + t17 * t56
-    t58 = t12 * t55 - np.where(t3, 0.0, t15 * t54) - t11 * t56
-    t59 = t34 * (t29 * t57 - t32 * t58)
-    t60 = t27 * (z_x * t54 - z_y * t55 - z_z * t56)
-    t61 = t30 * (t29 * t58 + t32 * t57) + t60
-    res[0] = t31 * t29
-    res[1] = t31 * t32
-    res_D_x[0, 0] = t29 * t53 - t32 * t51
-    res_D_x[0, 1] = t29 * t61 - t32 * t59
-    res_D_x[1, 0] = t32 * t53 + t29 * t51
-    res_D_x[1, 1] = t32 * t61 + t29 * t59
+    t21 = t20 < 1.1830521861667747e-271
+    t22 = 8.452712498170644e+270 < t20
+    t23 = np.where(t22, 2.409919865102884e-181, 1.0)
+    t24 = np.where(t21, 4.149515568880993e+180, t23)
+    t25 = t19 * t24
+    t26 = t18 * t24
+    t27 = np.sqrt(t25 * t25 + t26 * t26)
+    t28 = np.where(0.0 < t27, t27, 1.0)
+    t29 = np.where(t22, 4.149515568880993e+180, 1.0)
+    t30 = t27 * np.where(t21, 2.409919865102884e-181, t29)
+    t31 = 0.0 < t30
+    t32 = np.where(t31, t25 / t28, 1.0)
+    t33 = x_x * z_x + x_y * z_y + x_z * z_z
+    t34 = np.arctan2(t30, t33)
+    t35 = t26 / t28
+    t36 = np.where(t31, t30, np.where(0.0 < t33, 1.0, 0.0))
+    t37 = np.where(t31, t34, 1.0) / t36
+    t38 = np.abs(x_x)
+    t39 = np.abs(x_y)
+    t40 = np.abs(x_z)
+    t41 = (t38 <= t39) & (t38 <= t40)
+    t42 = t39 <= t40
+    t43 = np.where(t42, -x_z, x_y)
+    t44 = np.where(t41, x_z, np.where(t42, 0.0, t14))
+    t45 = np.where(t41, x_y, np.where(t42, t14, 0.0))
+    t46 = np.sqrt(np.where(t41, 0.0, t43 * t43) + t44 * t44 + t45 * t45)
+    t47 = 1.0 / t46
+    t48 = t44 * t47
+    t49 = t43 * t47
+    t50 = t45 * t47
+    t51 = t16 * t48 - np.where(t41, 0.0, t13 * t49) - t17 * t50
+    t52 = np.where(t41, 0.0, np.where(t3, 0.0, t15 * t49)) + t12 * t48
+    t53 = t52 + t11 * t50
+    t54 = t37 * (t32 * t51 - t35 * t53)
+    t55 = t30 * (np.where(t41, 0.0, t6 * t49) - z_y * t48 + z_z * t50)
+    t56 = t33 * (t32 * t53 + t35 * t51) + t55
+    t57 = x_y * t50 + x_z * t48
+    t58 = np.where(t41, 0.0, x_z * t49) + x_x * t50
+    t59 = x_x * t48 - np.where(t41, 0.0, x_y * t49)
+    t60 = t13 * t57 + t16 * t58 + t17 * t59
+    t61 = t12 * t58 - np.where(t3, 0.0, t15 * t57) - t11 * t59
+    t62 = t37 * (t32 * t60 - t35 * t61)
+    t63 = t30 * (z_x * t57 - z_y * t58 - z_z * t59)
+    t64 = t33 * (t32 * t61 + t35 * t60) + t63
+    res[0] = t34 * t32
+    res[1] = t34 * t35
+    res_D_x[0, 0] = t32 * t56 - t35 * t54
+    res_D_x[0, 1] = t32 * t64 - t35 * t62
+    res_D_x[1, 0] = t35 * t56 + t32 * t54
+    res_D_x[1, 1] = t35 * t64 + t32 * t62

@@ -21,7 +21,7 @@
 #   res: 2, R2 (x, y)
 #   res_D_x: 2 x 2, derivative of res by the tangent of x
 #
-# Operations: 76 (residual only), 123 (with Jacobians)
+# Operations: 77 (residual only), 125 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -107,16 +107,18 @@ def _value(x: Array, z: Array, res: Array) -> None:
     t17 = np.where(t3, 0.0, z_x * t11) + z_y * t14 - z_z * t12
     t18 = t17 * t17 + t16 * t16
     t19 = t18 < 1.1830521861667747e-271
-    t20 = np.where(8.452712498170644e+270 < t18, -2.409919865102884e-181, -1.0)
-    t21 = np.where(t19, -4.149515568880993e+180, t20)
-    t22 = t17 * t21
-    t23 = t16 * t21
-    t24 = np.sqrt(t22 * t22 + t23 * t23)
-    t25 = np.where(0.0 < t24, t24, 1.0)
-    t26 = -(t24 / t21)
-    t27 = np.arctan2(t26, x_x * z_x + x_y * z_y + x_z * z_z)
-    res[0] = t27 * np.where(0.0 < t26, t22 / t25, -1.0)
-    res[1] = t27 * (t23 / t25)
+    t20 = 8.452712498170644e+270 < t18
+    t21 = np.where(t20, -2.409919865102884e-181, -1.0)
+    t22 = np.where(t19, -4.149515568880993e+180, t21)
+    t23 = t17 * t22
+    t24 = t16 * t22
+    t25 = np.sqrt(t23 * t23 + t24 * t24)
+    t26 = np.where(0.0 < t25, t25, 1.0)
+    t27 = np.where(t20, 4.149515568880993e+180, 1.0)
+    t28 = t25 * np.where(t19, 2.409919865102884e-181, t27)
+    t29 = np.arctan2(t28, x_x * z_x + x_y * z_y + x_z * z_z)
+    res[0] = t29 * np.where(0.0 < t28, t23 / t26, -1.0)
+    res[1] = t29 * (t24 / t26)
 
 
 def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
@@ -141,34 +143,37 @@ def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
     t16 = z_x * (x_y * t11 + x_z * t12) + t14 + t15
     t17 = z_z * t11 - (np.where(t3, 0.0, z_x * t13) + z_y * t12)
     t18 = t17 * t17 + t16 * t16
-    t19 = np.where(8.452712498170644e+270 < t18, 2.409919865102884e-181, 1.0)
-    t20 = np.where(t18 < 1.1830521861667747e-271, 4.149515568880993e+180, t19)
-    t21 = t17 * t20
-    t22 = t16 * t20
-    t23 = np.sqrt(t21 * t21 + t22 * t22)
-    t24 = np.where(0.0 < t23, t23, 1.0)
-    t25 = t23 / t20
-    t26 = 0.0 < t25
-    t27 = np.where(t26, t21 / t24, -1.0)
-    t28 = x_x * z_x + x_y * z_y + x_z * z_z
-    t29 = np.arctan2(t25, t28)
-    t30 = t22 / t24
-    t31 = np.where(t26, t25, np.where(0.0 < t28, 1.0, 0.0))
-    t32 = np.where(t26, t29, 1.0) / t31
-    t33 = x_z * x_z
-    t34 = x_x * x_x
-    t35 = x_y * x_y
-    t36 = np.where(t3, t35 + t33, np.where(t4, t33 + t34, t35 + t34))
-    t37 = np.where(t3, x_x, np.where(t4, x_y, x_z)) / np.sqrt(t36)
-    t38 = t17 * t37
-    t39 = t28 - t16 * t37
-    t40 = t32 * (t27 * t38 - t30 * t39)
-    t41 = t28 * (t30 * t38 + t27 * t39) + t17 * t25
-    t42 = t28 * (t28 * t30) + t16 * t25
-    t43 = t32 * (t28 * t27)
-    res[0] = t29 * t27
-    res[1] = t29 * t30
-    res_D_x[0, 0] = t27 * t41 - t30 * t40
-    res_D_x[0, 1] = t27 * t42 - t30 * t43
-    res_D_x[1, 0] = t30 * t41 + t27 * t40
-    res_D_x[1, 1] = t30 * t42 + t27 * t43
+    t19 = t18 < 1.1830521861667747e-271
+    t20 = 8.452712498170644e+270 < t18
+    t21 = np.where(t20, 2.409919865102884e-181, 1.0)
+    t22 = np.where(t19, 4.149515568880993e+180, t21)
+    t23 = t17 * t22
+    t24 = t16 * t22
+    t25 = np.sqrt(t23 * t23 + t24 * t24)
+    t26 = np.where(0.0 < t25, t25, 1.0)
+    t27 = np.where(t20, 4.149515568880993e+180, 1.0)
+    t28 = t25 * np.where(t19, 2.409919865102884e-181, t27)
+    t29 = 0.0 < t28
+    t30 = np.where(t29, t23 / t26, -1.0)
+    t31 = x_x * z_x + x_y * z_y + x_z * z_z
+    t32 = np.arctan2(t28, t31)
+    t33 = t24 / t26
+    t34 = np.where(t29, t28, np.where(0.0 < t31, 1.0, 0.0))
+    t35 = np.where(t29, t32, 1.0) / t34
+    t36 = x_z * x_z
+    t37 = x_x * x_x
+    t38 = x_y * x_y
+    t39 = np.where(t3, t38 + t36, np.where(t4, t36 + t37, t38 + t37))
+    t40 = np.where(t3, x_x, np.where(t4, x_y, x_z)) / np.sqrt(t39)
+    t41 = t17 * t40
+    t42 = t31 - t16 * t40
+    t43 = t35 * (t30 * t41 - t33 * t42)
+    t44 = t31 * (t33 * t41 + t30 * t42) + t17 * t28
+    t45 = t31 * (t31 * t33) + t16 * t28
+    t46 = t35 * (t31 * t30)
+    res[0] = t32 * t30
+    res[1] = t32 * t33
+    res_D_x[0, 0] = t30 * t44 - t33 * t43
+    res_D_x[0, 1] = t30 * t45 - t33 * t46
+    res_D_x[1, 0] = t33 * t44 + t30 * t43
+    res_D_x[1, 1] = t33 * t45 + t30 * t46

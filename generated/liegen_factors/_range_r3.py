@@ -27,7 +27,7 @@
 #   res_D_x: 1 x 3, derivative of res by the tangent of x
 #   res_D_y: 1 x 3, derivative of res by the tangent of y
 #
-# Operations: 23 (residual only), 32 (with Jacobians)
+# Operations: 25 (residual only), 34 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -104,36 +104,43 @@ def _value(x: Array, y: Array, z: Array, res: Array) -> None:
     t1 = y_y - x_y
     t2 = y_z - x_z
     t3 = t0 * t0 + t1 * t1 + t2 * t2
-    t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
-    t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
-    t6 = t0 * t5
-    t7 = t1 * t5
-    t8 = t2 * t5
-    res[0] = np.sqrt(t6 * t6 + t7 * t7 + t8 * t8) / t5 - z_0
+    t4 = t3 < 1.1830521861667747e-271
+    t5 = 8.452712498170644e+270 < t3
+    t6 = np.where(t5, 2.409919865102884e-181, 1.0)
+    t7 = np.where(t4, 4.149515568880993e+180, t6)
+    t8 = t0 * t7
+    t9 = t1 * t7
+    t10 = t2 * t7
+    t11 = np.sqrt(t8 * t8 + t9 * t9 + t10 * t10)
+    t12 = np.where(t5, 4.149515568880993e+180, 1.0)
+    res[0] = t11 * np.where(t4, 2.409919865102884e-181, t12) - z_0
 
 
 def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y: Array) -> None:
     x_x, x_y, x_z = x
     y_x, y_y, y_z = y
     z_0 = z[0]
-    t0 = y_x - x_x
-    t1 = y_y - x_y
+    t0 = y_y - x_y
+    t1 = y_x - x_x
     t2 = y_z - x_z
-    t3 = t0 * t0 + t1 * t1 + t2 * t2
-    t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
-    t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
-    t6 = t0 * t5
-    t7 = t1 * t5
-    t8 = t2 * t5
-    t9 = np.sqrt(t6 * t6 + t7 * t7 + t8 * t8)
-    t10 = 1.0 / np.where(0.0 < t9, t9, 1.0)
-    t11 = t6 * t10
-    t12 = t7 * t10
-    t13 = t8 * t10
-    res[0] = t9 / t5 - z_0
-    res_D_x[0, 0] = -t11
-    res_D_x[0, 1] = -t12
-    res_D_x[0, 2] = -t13
-    res_D_y[0, 0] = t11
-    res_D_y[0, 1] = t12
-    res_D_y[0, 2] = t13
+    t3 = t1 * t1 + t0 * t0 + t2 * t2
+    t4 = 8.452712498170644e+270 < t3
+    t5 = t3 < 1.1830521861667747e-271
+    t6 = np.where(t4, 2.409919865102884e-181, 1.0)
+    t7 = np.where(t5, 4.149515568880993e+180, t6)
+    t8 = t0 * t7
+    t9 = t1 * t7
+    t10 = t2 * t7
+    t11 = np.where(t4, 4.149515568880993e+180, 1.0)
+    t12 = np.sqrt(t9 * t9 + t8 * t8 + t10 * t10)
+    t13 = 1.0 / np.where(0.0 < t12, t12, 1.0)
+    t14 = t10 * t13
+    t15 = t8 * t13
+    t16 = t9 * t13
+    res[0] = t12 * np.where(t5, 2.409919865102884e-181, t11) - z_0
+    res_D_x[0, 0] = -t16
+    res_D_x[0, 1] = -t15
+    res_D_x[0, 2] = -t14
+    res_D_y[0, 0] = t16
+    res_D_y[0, 1] = t15
+    res_D_y[0, 2] = t14

@@ -27,7 +27,7 @@
 #   res_D_x: 1 x 3, derivative of res by the tangent of x
 #   res_D_y: 1 x 3, derivative of res by the tangent of y
 #
-# Operations: 17 (residual only), 34 (with Jacobians)
+# Operations: 19 (residual only), 36 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -108,11 +108,15 @@ def _value(x: Array, y: Array, z: Array, res: Array) -> None:
     t0 = y_x - x_x
     t1 = y_y - x_y
     t2 = t0 * t0 + t1 * t1
-    t3 = np.where(8.452712498170644e+270 < t2, 2.409919865102884e-181, 1.0)
-    t4 = np.where(t2 < 1.1830521861667747e-271, 4.149515568880993e+180, t3)
-    t5 = t0 * t4
-    t6 = t1 * t4
-    res[0] = np.sqrt(t5 * t5 + t6 * t6) / t4 - z_0
+    t3 = t2 < 1.1830521861667747e-271
+    t4 = 8.452712498170644e+270 < t2
+    t5 = np.where(t4, 2.409919865102884e-181, 1.0)
+    t6 = np.where(t3, 4.149515568880993e+180, t5)
+    t7 = t0 * t6
+    t8 = t1 * t6
+    t9 = np.where(t4, 4.149515568880993e+180, 1.0)
+    t10 = np.where(t3, 2.409919865102884e-181, t9)
+    res[0] = np.sqrt(t7 * t7 + t8 * t8) * t10 - z_0
 
 
 def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y: Array) -> None:
@@ -122,16 +126,19 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t0 = y_x - x_x
     t1 = y_y - x_y
     t2 = t0 * t0 + t1 * t1
-    t3 = np.where(8.452712498170644e+270 < t2, 2.409919865102884e-181, 1.0)
-    t4 = np.where(t2 < 1.1830521861667747e-271, 4.149515568880993e+180, t3)
-    t5 = t0 * t4
-    t6 = t1 * t4
-    t7 = np.sqrt(t5 * t5 + t6 * t6)
-    t8 = np.where(0.0 < t7, t7, 1.0)
-    t9 = t5 / t8
-    t10 = t6 / t8
-    res[0] = t7 / t4 - z_0
-    res_D_x[0, 0] = -(x_c * t9 + x_s * t10)
-    res_D_x[0, 1] = x_s * t9 - x_c * t10
-    res_D_y[0, 0] = y_c * t9 + y_s * t10
-    res_D_y[0, 1] = y_c * t10 - y_s * t9
+    t3 = t2 < 1.1830521861667747e-271
+    t4 = 8.452712498170644e+270 < t2
+    t5 = np.where(t4, 2.409919865102884e-181, 1.0)
+    t6 = np.where(t3, 4.149515568880993e+180, t5)
+    t7 = t0 * t6
+    t8 = t1 * t6
+    t9 = np.sqrt(t7 * t7 + t8 * t8)
+    t10 = np.where(t4, 4.149515568880993e+180, 1.0)
+    t11 = np.where(0.0 < t9, t9, 1.0)
+    t12 = t7 / t11
+    t13 = t8 / t11
+    res[0] = t9 * np.where(t3, 2.409919865102884e-181, t10) - z_0
+    res_D_x[0, 0] = -(x_c * t12 + x_s * t13)
+    res_D_x[0, 1] = x_s * t12 - x_c * t13
+    res_D_y[0, 0] = y_c * t12 + y_s * t13
+    res_D_y[0, 1] = y_c * t13 - y_s * t12

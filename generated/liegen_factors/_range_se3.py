@@ -28,7 +28,7 @@
 #   res_D_x: 1 x 6, derivative of res by the tangent of x
 #   res_D_y: 1 x 6, derivative of res by the tangent of y
 #
-# Operations: 23 (residual only), 105 (with Jacobians)
+# Operations: 25 (residual only), 107 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -110,12 +110,16 @@ def _value(x: Array, y: Array, z: Array, res: Array) -> None:
     t1 = y_y - x_y
     t2 = y_z - x_z
     t3 = t0 * t0 + t1 * t1 + t2 * t2
-    t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
-    t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
-    t6 = t0 * t5
-    t7 = t1 * t5
-    t8 = t2 * t5
-    res[0] = np.sqrt(t6 * t6 + t7 * t7 + t8 * t8) / t5 - z_0
+    t4 = t3 < 1.1830521861667747e-271
+    t5 = 8.452712498170644e+270 < t3
+    t6 = np.where(t5, 2.409919865102884e-181, 1.0)
+    t7 = np.where(t4, 4.149515568880993e+180, t6)
+    t8 = t0 * t7
+    t9 = t1 * t7
+    t10 = t2 * t7
+    t11 = np.sqrt(t8 * t8 + t9 * t9 + t10 * t10)
+    t12 = np.where(t5, 4.149515568880993e+180, 1.0)
+    res[0] = t11 * np.where(t4, 2.409919865102884e-181, t12) - z_0
 
 
 def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y: Array) -> None:
@@ -126,46 +130,49 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t1 = x_y - y_y
     t2 = x_z - y_z
     t3 = t2 * t2 + (t0 * t0 + t1 * t1)
-    t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
-    t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
-    t6 = t0 * t5
-    t7 = t1 * t5
-    t8 = t2 * t5
-    t9 = np.sqrt(t8 * t8 + (t6 * t6 + t7 * t7))
-    t10 = 1.0 / np.where(0.0 < t9, t9, 1.0)
-    t11 = t6 * t10
-    t12 = x_qy * 2.0
-    t13 = 1.0 - x_qy * t12
-    t14 = 2.0 * x_qz
-    t15 = x_qz * t14
-    t16 = t7 * t10
-    t17 = t12 * x_qx
-    t18 = t14 * x_qw
-    t19 = t8 * t10
-    t20 = t14 * x_qx
-    t21 = t12 * x_qw
-    t22 = 2.0 * x_qx
-    t23 = x_qx * t22
-    t24 = t11 * (t17 - t18) + t16 * (1.0 - t15 - t23)
-    t25 = x_qy * t14
-    t26 = x_qw * t22
-    t27 = 2.0 * y_qz
-    t28 = y_qz * t27
-    t29 = 2.0 * y_qy
-    t30 = 1.0 - y_qy * t29
-    t31 = t29 * y_qx
-    t32 = t27 * y_qw
-    t33 = t29 * y_qw
-    t34 = t27 * y_qx
-    t35 = 2.0 * y_qx
-    t36 = y_qx * t35
-    t37 = t11 * (t32 - t31) + t16 * (t36 + (t28 - 1.0))
-    t38 = y_qy * t27
-    t39 = y_qw * t35
-    res[0] = t9 / t5 - z_0
-    res_D_x[0, 3] = t19 * (t20 - t21) + (t11 * (t13 - t15) + t16 * (t17 + t18))
-    res_D_x[0, 4] = t19 * (t25 + t26) + t24
-    res_D_x[0, 5] = t19 * (t13 - t23) + (t11 * (t20 + t21) + t16 * (t25 - t26))
-    res_D_y[0, 3] = t19 * (t33 - t34) + (t11 * (t28 - t30) - t16 * (t31 + t32))
-    res_D_y[0, 4] = t37 - t19 * (t38 + t39)
-    res_D_y[0, 5] = t19 * (t36 - t30) + (t16 * (t39 - t38) - t11 * (t34 + t33))
+    t4 = t3 < 1.1830521861667747e-271
+    t5 = 8.452712498170644e+270 < t3
+    t6 = np.where(t5, 2.409919865102884e-181, 1.0)
+    t7 = np.where(t4, 4.149515568880993e+180, t6)
+    t8 = t0 * t7
+    t9 = t1 * t7
+    t10 = t2 * t7
+    t11 = np.sqrt(t10 * t10 + (t8 * t8 + t9 * t9))
+    t12 = np.where(t5, 4.149515568880993e+180, 1.0)
+    t13 = 1.0 / np.where(0.0 < t11, t11, 1.0)
+    t14 = t8 * t13
+    t15 = x_qy * 2.0
+    t16 = 1.0 - x_qy * t15
+    t17 = 2.0 * x_qz
+    t18 = x_qz * t17
+    t19 = t9 * t13
+    t20 = t15 * x_qx
+    t21 = t17 * x_qw
+    t22 = t10 * t13
+    t23 = t17 * x_qx
+    t24 = t15 * x_qw
+    t25 = 2.0 * x_qx
+    t26 = x_qx * t25
+    t27 = t14 * (t20 - t21) + t19 * (1.0 - t18 - t26)
+    t28 = x_qy * t17
+    t29 = x_qw * t25
+    t30 = 2.0 * y_qz
+    t31 = y_qz * t30
+    t32 = 2.0 * y_qy
+    t33 = 1.0 - y_qy * t32
+    t34 = t32 * y_qx
+    t35 = t30 * y_qw
+    t36 = t32 * y_qw
+    t37 = t30 * y_qx
+    t38 = 2.0 * y_qx
+    t39 = y_qx * t38
+    t40 = t14 * (t35 - t34) + t19 * (t39 + (t31 - 1.0))
+    t41 = y_qy * t30
+    t42 = y_qw * t38
+    res[0] = t11 * np.where(t4, 2.409919865102884e-181, t12) - z_0
+    res_D_x[0, 3] = t22 * (t23 - t24) + (t14 * (t16 - t18) + t19 * (t20 + t21))
+    res_D_x[0, 4] = t22 * (t28 + t29) + t27
+    res_D_x[0, 5] = t22 * (t16 - t26) + (t14 * (t23 + t24) + t19 * (t28 - t29))
+    res_D_y[0, 3] = t22 * (t36 - t37) + (t14 * (t31 - t33) - t19 * (t34 + t35))
+    res_D_y[0, 4] = t40 - t22 * (t41 + t42)
+    res_D_y[0, 5] = t22 * (t39 - t33) + (t19 * (t42 - t41) - t14 * (t37 + t36))

@@ -29,7 +29,7 @@
 #   res_D_x: 1 x 6, derivative of res by the tangent of x
 #   res_D_y: 1 x 3, derivative of res by the tangent of y
 #
-# Operations: 23 (residual only), 67 (with Jacobians)
+# Operations: 25 (residual only), 69 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -111,12 +111,16 @@ def _value(x: Array, y: Array, z: Array, res: Array) -> None:
     t1 = y_y - x_y
     t2 = y_z - x_z
     t3 = t0 * t0 + t1 * t1 + t2 * t2
-    t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
-    t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
-    t6 = t0 * t5
-    t7 = t1 * t5
-    t8 = t2 * t5
-    res[0] = np.sqrt(t6 * t6 + t7 * t7 + t8 * t8) / t5 - z_0
+    t4 = t3 < 1.1830521861667747e-271
+    t5 = 8.452712498170644e+270 < t3
+    t6 = np.where(t5, 2.409919865102884e-181, 1.0)
+    t7 = np.where(t4, 4.149515568880993e+180, t6)
+    t8 = t0 * t7
+    t9 = t1 * t7
+    t10 = t2 * t7
+    t11 = np.sqrt(t8 * t8 + t9 * t9 + t10 * t10)
+    t12 = np.where(t5, 4.149515568880993e+180, 1.0)
+    res[0] = t11 * np.where(t4, 2.409919865102884e-181, t12) - z_0
 
 
 def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y: Array) -> None:
@@ -127,33 +131,36 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t1 = x_y - y_y
     t2 = x_z - y_z
     t3 = t2 * t2 + (t0 * t0 + t1 * t1)
-    t4 = np.where(8.452712498170644e+270 < t3, 2.409919865102884e-181, 1.0)
-    t5 = np.where(t3 < 1.1830521861667747e-271, 4.149515568880993e+180, t4)
-    t6 = t0 * t5
-    t7 = t1 * t5
-    t8 = t2 * t5
-    t9 = np.sqrt(t8 * t8 + (t6 * t6 + t7 * t7))
-    t10 = -1.0 / np.where(0.0 < t9, t9, 1.0)
-    t11 = t6 * t10
-    t12 = 2.0 * x_qz
-    t13 = x_qz * t12
-    t14 = x_qy * 2.0
-    t15 = 1.0 - x_qy * t14
-    t16 = t7 * t10
-    t17 = t14 * x_qx
-    t18 = t12 * x_qw
-    t19 = t8 * t10
-    t20 = t14 * x_qw
-    t21 = t12 * x_qx
-    t22 = 2.0 * x_qx
-    t23 = x_qx * t22
-    t24 = t11 * (t18 - t17) + t16 * (t23 + (t13 - 1.0))
-    t25 = x_qy * t12
-    t26 = x_qw * t22
-    res[0] = t9 / t5 - z_0
-    res_D_x[0, 3] = t19 * (t20 - t21) + (t11 * (t13 - t15) - t16 * (t17 + t18))
-    res_D_x[0, 4] = t24 - t19 * (t25 + t26)
-    res_D_x[0, 5] = t19 * (t23 - t15) + (t16 * (t26 - t25) - t11 * (t21 + t20))
-    res_D_y[0, 0] = t11
-    res_D_y[0, 1] = t16
-    res_D_y[0, 2] = t19
+    t4 = t3 < 1.1830521861667747e-271
+    t5 = 8.452712498170644e+270 < t3
+    t6 = np.where(t5, -2.409919865102884e-181, -1.0)
+    t7 = np.where(t4, -4.149515568880993e+180, t6)
+    t8 = t0 * t7
+    t9 = t1 * t7
+    t10 = t2 * t7
+    t11 = np.sqrt(t10 * t10 + (t8 * t8 + t9 * t9))
+    t12 = np.where(t5, 4.149515568880993e+180, 1.0)
+    t13 = 1.0 / np.where(0.0 < t11, t11, 1.0)
+    t14 = t8 * t13
+    t15 = 2.0 * x_qz
+    t16 = x_qz * t15
+    t17 = x_qy * 2.0
+    t18 = 1.0 - x_qy * t17
+    t19 = t9 * t13
+    t20 = t17 * x_qx
+    t21 = t15 * x_qw
+    t22 = t10 * t13
+    t23 = t17 * x_qw
+    t24 = t15 * x_qx
+    t25 = 2.0 * x_qx
+    t26 = x_qx * t25
+    t27 = t14 * (t21 - t20) + t19 * (t26 + (t16 - 1.0))
+    t28 = x_qy * t15
+    t29 = x_qw * t25
+    res[0] = t11 * np.where(t4, 2.409919865102884e-181, t12) - z_0
+    res_D_x[0, 3] = t22 * (t23 - t24) + (t14 * (t16 - t18) - t19 * (t20 + t21))
+    res_D_x[0, 4] = t27 - t22 * (t28 + t29)
+    res_D_x[0, 5] = t22 * (t26 - t18) + (t19 * (t29 - t28) - t14 * (t24 + t23))
+    res_D_y[0, 0] = t14
+    res_D_y[0, 1] = t19
+    res_D_y[0, 2] = t22
