@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
+from compiler_tools import needs_compiler
 from liegen.bench import batches, draws, ours
 from liegen.bench.build import load
 from liegen.bench.ceilings import load_loops, whole
 from liegen.bench.variant import FLAGS, Task
 from liegen.library import between_se2, between_so3
-from liegen.native import find_compiler
 from liegen.program import Port, Program
 from liegen.program.program import Instruction
 
-pytestmark = pytest.mark.skipif(not find_compiler(), reason="no C compiler")
+pytestmark = needs_compiler
 TASK = Task(between_se2)
 
 

@@ -6,10 +6,10 @@ import shutil
 import pytest
 from click.testing import CliRunner
 
+from compiler_tools import needs_compiler
 from liegen.cli.application import app
-from liegen.native import find_compiler
 
-pytestmark = pytest.mark.skipif(not find_compiler(), reason="no C compiler")
+pytestmark = needs_compiler
 
 
 def run(*arguments, code=0):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from compiler_tools import needs_compiler
 from liegen import SE3
 from liegen.bench.pose_graph import AGREEMENT, Edges, compare_graph, read, solved
 from liegen.bench.python_batches import compare_batches
-from liegen.native import find_compiler
 
-pytestmark = pytest.mark.skipif(not find_compiler(), reason="no C compiler")
+pytestmark = needs_compiler
 
 
 def square(noise: float) -> tuple[np.ndarray, Edges]:

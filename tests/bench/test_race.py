@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from bench_tools import QUICK, made
 
+from compiler_tools import needs_compiler
 from liegen.bench import casadi_c, ceres_jets, formulas, ours, symforce_cpp, wrenfold_cpp
 from liegen.bench.peers import PUBLISHED, tasks
 from liegen.bench.race import race
 from liegen.bench.variant import AbsentError, Task
 from liegen.library import between_se2, projection_cal3_s2
-from liegen.native import find_compiler
 
-pytestmark = pytest.mark.skipif(not find_compiler(), reason="no C compiler")
+pytestmark = needs_compiler
 
 PEERS = {"wrenfold": wrenfold_cpp, "SymForce": symforce_cpp, "Ceres": ceres_jets}
 QUICK_ONES = ("between_se2", "quaternion_interpolation")

@@ -13,12 +13,13 @@ from click.testing import CliRunner
 from scipy.linalg import expm, logm
 from scipy.spatial.transform import Rotation
 
+from compiler_tools import needs_compiler
 from liegen import R3, SE3, factor, library
 from liegen.cli import app
 from liegen.errors import LiegenError, SourceError, ToolError
 from liegen.foreign import compare, foreign
 from liegen.foreign.calls import of_callable
-from liegen.native import compile_shared, find_compiler
+from liegen.native import compile_shared
 
 SWAP = [3, 4, 5, 0, 1, 2]
 
@@ -306,7 +307,7 @@ int bad(const double *x, const double *y, const double *z, double *res, double *
 """
 
 
-@pytest.mark.skipif(not find_compiler(), reason="no C compiler here")
+@needs_compiler
 def test_c_functions(tmp_path):
     (tmp_path / "mine.c").write_text(C_RANGE)
     shared = tmp_path / "mine.so"

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from compiler_tools import needs_compiler
 from liegen.cli import app
 from liegen.native import find_compiler
 
 ROOT = Path(__file__).resolve().parents[2]
 TREE = ROOT / "generated" / "groups"
 DOCUMENT = (ROOT / "docs" / "group_modules.md").read_text(encoding="utf-8")
-needs_compiler = pytest.mark.skipif(not find_compiler(), reason="there is no C compiler")
 
 
 def run(*arguments, code=0):

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compiler_tools import needs_compiler
 from liegen.emit import render
 from liegen.modules import every_function
-from liegen.native import find_compiler
 from liegen.samples import CASES
 from liegen.verify.backends import PACKAGE, Workspace, workspace
 from liegen.verify.compiled import compile_c
@@ -19,7 +19,6 @@ from liegen.verify.factor import check_factor
 from liegen.verify.in_place import in_place
 
 FUNCTIONS = every_function()
-needs_compiler = pytest.mark.skipif(not find_compiler(), reason="there is no C compiler")
 
 
 @pytest.fixture(scope="module")

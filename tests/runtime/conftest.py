@@ -1,9 +1,9 @@
 from __future__ import annotations
 
 import pytest
-from runtime_tools import needs_compiler
 
 import liegen
+from compiler_tools import needs_compiler
 
 
 @pytest.fixture(params=[pytest.param("c", marks=needs_compiler), "numpy"])

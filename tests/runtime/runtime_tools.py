@@ -1,11 +1,6 @@
 """What the tests of compiled factors share."""
 
 import numpy as np
-import pytest
-
-from liegen.native import find_compiler
-
-needs_compiler = pytest.mark.skipif(not find_compiler(), reason="no C compiler")
 
 
 def results(value):

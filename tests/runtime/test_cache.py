@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from runtime_factors import arguments, between, pixel, rotated
-from runtime_tools import needs_compiler
 
 import liegen
+from compiler_tools import needs_compiler
 from liegen import native
 from liegen.errors import CacheWarning, CompilerWarning, ToolError
 from liegen.runtime import build, cache, compiled

@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 import numpy as np
-from runtime_tools import needs_compiler
+
+from compiler_tools import needs_compiler
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "compile.md").read_text(encoding="utf-8")
 

@@ -15,9 +15,10 @@ from runtime_factors import (
     quotient,
     rotated,
 )
-from runtime_tools import close, needs_compiler
+from runtime_tools import close
 
 import liegen
+from compiler_tools import needs_compiler
 from liegen import R3, SE3, SO3, DefinitionError
 
 # --- the call ---------------------------------------------------------------------------------------------

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from runtime_tools import needs_compiler
 
 import liegen
+from compiler_tools import needs_compiler
 from liegen import R3, SE3, DefinitionError, factor, function, library
 from liegen.runtime import NormalEquations
 
