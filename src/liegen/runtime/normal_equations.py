@@ -39,9 +39,10 @@ class _Sums(ctypes.Structure):
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Factors of one kind: the function of their terms, where the parts of g go, and where those of H."""
+    """Factors of one kind: the function of their terms; where their costs, parts of g and blocks of H go."""
 
     terms: Indexed
+    costs: Places
     vectors: tuple[Places, ...]
     blocks: tuple[Places, ...]
 
@@ -67,6 +68,7 @@ class NormalEquations:
         self.groups: tuple[Group, ...] = tuple(
             Group(
                 f.gauss_newton,
+                np.zeros((f.indices.length, 1, 3), dtype=np.intp),
                 tuple(self.pattern.vector(m) for m in variables),
                 tuple(self.pattern.block(a, b) for a, b in combinations_with_replacement(variables, 2)),
             )
@@ -84,8 +86,7 @@ class NormalEquations:
             )
         cost, g, H = np.zeros(1), np.zeros(self.pattern.dim + 1), np.zeros(self.pattern.entries + 1)
         for group, named in zip(self.groups, arguments, strict=True):
-            everywhere = np.zeros((group.terms.indices.length, 1, 3), dtype=np.intp)
-            targets = [(cost, everywhere), *((g, p) for p in group.vectors), *((H, p) for p in group.blocks)]
+            targets = [(cost, group.costs), *((g, p) for p in group.vectors), *((H, p) for p in group.blocks)]
             _add(group.terms, named, targets)
         return Terms(float(cost[0]), g[:-1], _sparse(self.pattern, H[:-1]))
 

@@ -63,6 +63,8 @@ def _sides(function: AnyFunction, drawn: Samples, expected: Expected) -> list[Fa
     wanted = {residual, *(f"{residual}_D_{v}" for v in variables)}
     blocks = {b.name: b for b in expected.blocks if b.name in wanted}
     count, m = blocks[residual].expected.shape[1:]
+    robust = function.weighting if function.weighting and function.weighting.loss else None
+    costs = _robust_costs(function, robust, drawn) if robust else None
     found: list[Factor] = []
     for side in range(2):
         value = {name: b.expected[side].reshape(count, m, -1) for name, b in blocks.items()}
@@ -72,21 +74,24 @@ def _sides(function: AnyFunction, drawn: Samples, expected: Expected) -> list[Fa
             np.abs(r).sum(axis=1) + m * bound[residual]
         )
         cost = 0.5 * (r * r).sum(axis=1)
-        if function.weighting is not None and function.weighting.loss is not None:
-            cost, allowed = _robust_cost(function, function.weighting, drawn, flip=bool(side))
+        if costs:
+            cost, allowed = costs[side]
         found.append(Factor(value, bound, cost, allowed))
     return found
 
 
-def _robust_cost(
-    function: AnyFunction, weighting: Weighting, drawn: Samples, *, flip: bool
-) -> tuple[Array, Array]:
-    """The reference's cost, and how far off it may be."""
+def _robust_costs(
+    function: AnyFunction, weighting: Weighting, drawn: Samples
+) -> tuple[tuple[Array, Array], ...]:
+    """The reference's cost on each branch, and how far off it may be."""
     graph = cost_graph(function.plain, weighting)
     moved = rounding(function.gauss_newton_kernel.value, batch(drawn.inside))["cost"]
-    costs: list[Any] = [reference.outputs(graph, s.values, flip=flip)["cost"] for s in drawn.inside]
-    cost = np.array([float(c[0]) for c in costs])
-    return cost, BOUND * np.maximum(1.0, np.abs(cost)) + moved
+    found: list[tuple[Array, Array]] = []
+    for flip in (False, True):
+        costs: list[Any] = [reference.outputs(graph, s.values, flip=flip)["cost"] for s in drawn.inside]
+        cost = np.array([float(c[0]) for c in costs])
+        found.append((cost, BOUND * np.maximum(1.0, np.abs(cost)) + moved))
+    return tuple(found)
 
 
 def _names(kernel: Kernel) -> tuple[str, list[str]]:
