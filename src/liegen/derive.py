@@ -102,7 +102,7 @@ def noise_lines(graph: Graph, weighting: Weighting | None) -> tuple[str, ...]:
     if not weighting:
         return ()
     ((name, node),) = unwhitened(graph).outputs
-    variables = [p.name for p in graph.parameters if p.variable]
+    variables = [p.name for p in graph.variables]
     return weighting.lines(name, node.manifold.form.dim, variables, graph.frames.noise)
 
 
@@ -111,7 +111,7 @@ def function_latex(graph: Graph, weighting: Weighting | None) -> str:
     if not weighting:
         return latex(graph)
     shown = unwhitened(graph)
-    variables = [latex_name(p.name) for p in graph.parameters if p.variable]
+    variables = [latex_name(p.name) for p in graph.variables]
     return aligned((*latex_rows(shown), *weighting.latex_rows(latex_name(shown.outputs[0][0]), variables)))
 
 

@@ -58,7 +58,7 @@ def summary(function: AnyFunction) -> Summary:
     kinds = {w.name: w.kind for w in weights_of(function.plain, function.weighting)}
     return Summary(
         name=graph.name,
-        variables={p.name: p.manifold.form.name for p in graph.parameters if p.variable},
+        variables={p.name: p.manifold.form.name for p in graph.variables},
         given={p.name: kinds.get(p.name, p.manifold.form.name) for p in graph.parameters if not p.variable},
         outputs={n: (node.manifold.form.name, node.manifold.form.dim) for n, node in graph.outputs},
         meaning=lines[0] if lines else "",

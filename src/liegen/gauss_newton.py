@@ -48,10 +48,6 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
     )
 
 
-def _variables(graph: Graph) -> tuple[Parameter, ...]:
-    return tuple(p for p in graph.parameters if p.variable)
-
-
 def _candidates(graph: Graph, values: Expressions, weighting: Weighting | None) -> Iterator[Program]:
     """A program for each frontier, of the local blocks as they are and without what cancels."""
     ((_, node),) = graph.outputs
@@ -76,7 +72,7 @@ def _ports(terms: Terms) -> Iterator[tuple[Port, Vector]]:
 
 
 def _outputs(graph: Graph, weighting: Weighting | None) -> tuple[Output, ...]:
-    variables = _variables(graph)
+    variables = graph.variables
     cost = "half of rho" if weighting and weighting.loss else "half the squared norm of the residual"
     gradients = [
         Output(

@@ -75,7 +75,7 @@ def _charted(graph: Graph) -> bool:
 def _key(graph: Graph, name: str) -> tuple[Any, ...]:
     """What the preset says of each manifold whose chart the results depend on."""
     nodes = [n for n in graph.nodes() if n.operation.name in ("retract", "local")]
-    forms = [p.manifold.form for p in graph.parameters if p.variable]
+    forms = [p.manifold.form for p in graph.variables]
     forms += [node.manifold.form for _, node in graph.outputs] if forms else []
     forms += [n.operands[0].manifold.form for n in nodes]
     return tuple((form.name, _choice(form, name)) for form in forms)

@@ -38,8 +38,7 @@ def _terms(task: Task, blocks: Mapping[str, Block]) -> dict[str, Block]:
     r = residual.expected
     J = {
         p.name: blocks[f"{output}_D_{p.name}"].expected.reshape(*r.shape, -1)
-        for p in task.function.graph.parameters
-        if p.variable
+        for p in task.function.graph.variables
     }
     found = {"cost": 0.5 * (r * r).sum(axis=2, keepdims=True)}
     found |= {f"g_{name}": np.einsum("bsij,bsi->bsj", block, r) for name, block in J.items()}

@@ -42,9 +42,7 @@ def finished(task: Task, derived: Rows, matrix: Callable[[Sequence[Sequence[Any]
         return derived
     ((output, _),) = task.function.graph.outputs
     r = matrix(derived[output])
-    J = {
-        p.name: matrix(derived[f"{output}_D_{p.name}"]) for p in task.function.graph.parameters if p.variable
-    }
+    J = {p.name: matrix(derived[f"{output}_D_{p.name}"]) for p in task.function.graph.variables}
     found = {"cost": r.T * r / 2, **{f"g_{name}": J[name].T * r for name in J}}
     found |= {f"H_{a}_{b}": J[a].T * J[b] for a, b in combinations_with_replacement(J, 2)}
     return {

@@ -77,7 +77,7 @@ def linearised(graph: Graph, values: Expressions, *, through_storage: bool = Fal
 
     Once as they are, and once without what cancels, if anything does.
     """
-    variables = {id(p.node): p for p in graph.parameters if p.variable}
+    variables = {id(p.node): p for p in graph.variables}
     active = _active(graph)
     edges: dict[tuple[int, int], Chain] = {}
     for node in graph.nodes():
@@ -163,7 +163,7 @@ def _rows(node: Node, preset: Preset, values: Expressions) -> Chain:
 
 def _active(graph: Graph) -> set[int]:
     """The vertices on a way from a variable to an output."""
-    below = {id(p.node) for p in graph.parameters if p.variable}
+    below = {id(p.node) for p in graph.variables}
     for node in graph.nodes():
         if any(id(n) in below for n in node.operands):
             below.add(id(node))

@@ -75,7 +75,7 @@ def _object(module: Any, name: str, source: str) -> Any:
 
 
 def _gtsam_factor(found: Any, graph: Graph, kernel: Kernel, place: str, stated: Mapping[str, Any]) -> Foreign:
-    variables = [p for p in graph.parameters if p.variable]
+    variables = graph.variables
     names = [p.name for p in graph.parameters]
 
     def of_object(*arguments: Array) -> tuple[Array, ...]:

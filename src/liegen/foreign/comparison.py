@@ -112,7 +112,7 @@ def compare(
         raise DefinitionError(f"{function.name} has several outputs; check-jacobian is for one residual")
     general = _sampled(function, foreign, _ANY, samples, seed)
     zero = _sampled(function, foreign, _ZERO, max(4, samples // 4), seed)
-    variables = [p.name for p in function.graph.parameters if p.variable]
+    variables = [p.name for p in function.graph.variables]
     output = function.graph.outputs[0][0]
     choices = [of_residual(function.graph), *(of_jacobian(function.graph, v) for v in variables)]
     names = [output, *(f"{output}_D_{v}" for v in variables)]
@@ -171,7 +171,7 @@ def _one_after_the_other(
 
 def _sampled(function: Function[..., Any], foreign: Foreign, case: Case, samples: int, seed: int) -> _Sampled:
     parameters = {p.name: p.manifold for p in function.graph.parameters}
-    variables = [p.name for p in function.graph.parameters if p.variable]
+    variables = [p.name for p in function.graph.variables]
     manifolds: Any = parameters
     sampler = function.sampler or default_sampler(manifolds)
     draw = Draw(np.random.default_rng(seed))

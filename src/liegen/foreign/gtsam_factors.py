@@ -37,7 +37,7 @@ def given_by(factor: Any, graph: Graph, place: str, stated: Mapping[str, Any]) -
     ``stated`` has those that it does not tell, by the argument's name. Raises SourceError where it has other
     keys than the formula variables, or lacks a given argument.
     """
-    variables = [p for p in graph.parameters if p.variable]
+    variables = graph.variables
     if len(factor.keys()) != len(variables):
         raise SourceError(
             f"{place} has {len(factor.keys())} keys, {graph.name} has the variables "
@@ -76,7 +76,7 @@ def evaluated(factor: Any, variables: Sequence[Parameter], arguments: Sequence[A
 def made(factor_class: Any, graph: Graph, arguments: Mapping[str, Array]) -> Any:
     """A factor of a class such as BetweenFactorPose3: keys, what is given, and unit noise."""
     gtsam = _module_of(factor_class)
-    variables = [p for p in graph.parameters if p.variable]
+    variables = graph.variables
     given = [to_gtsam(gtsam, p.manifold, arguments[p.name]) for p in graph.parameters if not p.variable]
     noise = gtsam.noiseModel.Unit.Create(graph.outputs[0][1].manifold.form.dim)
     try:

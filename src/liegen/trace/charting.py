@@ -29,7 +29,7 @@ def in_charts(graph: Graph, chart: ChartLike | None) -> Graph:
     common = common_chart(chart, what)
     single = not isinstance(chart, Mapping)
     own = {} if single else {name: preset(c, f"{what}: chart of {name!r}") for name, c in chart.items()}
-    variables = {p.name: p for p in graph.parameters if p.variable}
+    variables = {p.name: p for p in graph.variables}
     for name in own:
         _refuse_other(name, variables, what)
     try:

@@ -67,6 +67,11 @@ class Graph:
     layout: Stored = OWN  # of the outputs
     normalise: bool = False  # whether arguments are brought to unit length
 
+    @property
+    def variables(self) -> tuple[Parameter, ...]:
+        """The parameters that get Jacobians."""
+        return tuple(p for p in self.parameters if p.variable)
+
     def nodes(self) -> tuple[Node, ...]:
         """All nodes that outputs and domain need, operands first."""
         return topological([node for _, node in self.outputs] + [d.condition for d in self.domain])

@@ -47,7 +47,7 @@ def jacobian_lines(graph: Graph, inline: Callable[[Node], bool]) -> Lines:
 
     ``inline`` says which values may stand in a block as they are, without a name.
     """
-    variables = {id(p.node): p.node for p in graph.parameters if p.variable}
+    variables = {id(p.node): p.node for p in graph.variables}
     charted = {id(p.node) for p in graph.parameters if form_chart(p.manifold.form, p.chart)}
     active = _active(graph, variables)
     shared = named_values(graph)

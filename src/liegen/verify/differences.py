@@ -58,8 +58,7 @@ def differences(
             break
         found = [
             _compared(graph, sample, p, evaluate, {name: array[k] for name, array in jacobians.items()})
-            for p in graph.parameters
-            if p.variable
+            for p in graph.variables
         ]
         if any(entry is None for entry in found):
             skipped.append(f"{sample.case}: a kink or pole within the steps")

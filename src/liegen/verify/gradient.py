@@ -39,7 +39,7 @@ def gradient(
     """
     cost = cost_graph(function.plain, weighting)
     allowed = rounding(function.kernel.jacobians, batch(tuple(samples)))
-    variables = [p.name for p in function.plain.parameters if p.variable]
+    variables = [p.name for p in function.plain.variables]
     worst, where, kept = 0.0, "", 0
     skipped: list[str] = []
     for k, sample in enumerate(samples):

@@ -89,7 +89,7 @@ def remainder_slopes(
     with mp.workdps(reference.DIGITS):
         given = loaded(graph, sample.values)
         base = run(graph, graph.nodes(), given, flip=flip)
-        for p in (p for p in graph.parameters if p.variable):
+        for p in graph.variables:
             d = _direction(graph, p, turn)
             rows = [_remainders(base, given, p, d, jacobians, power) for power in STEPS]
             for name, _ in graph.outputs:

@@ -34,8 +34,7 @@ def jacobians(graph: Graph, sample: Sample, *, flip: bool = False) -> Jacobians:
         step = mp.mpf(10) ** -order
         return {
             (name, p.name): entry
-            for p in graph.parameters
-            if p.variable
+            for p in graph.variables
             for name, entry in _by_variable(base, given, p, step).items()
         }
 
