@@ -12,7 +12,7 @@ from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
 from .c_batch import BATCH_NAMES, batch_name, printed_batch
-from .elementary_text import elementary_text
+from .elementary_text import elementary_text, scalar_text
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .printer import Assignment, Listing, Store, print_program
 from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
@@ -61,6 +61,13 @@ SINGLE = Precision(
     "_f32",
     replace(SYNTAX, calls={op: f"{name}f" for op, name in SYNTAX.calls.items()}, constant=_spell_single),
 )
+_FORMATS = {
+    "scalar": "const {0} {1} = {2};",
+    "condition": "const int {1} = {2};",
+    "pair": "{0} {1}; {2};",
+}
+#: Operations that are calls of the package's own functions, the sine where the cosine is wanted too.
+_OWN = words("atan2 sin")
 _STATUS = "The result is 0, or the bits of the requirements that do not hold."
 #: Requirements that the status of a batch, a byte for each factor, has bits for.
 _BITS = 8
@@ -114,9 +121,16 @@ def _names(kernel: Kernel) -> tuple[str, ...]:
     return (kernel.name, value_name(kernel), f"{kernel.name}_cm")
 
 
+def _syntax(precision: Precision, package: str) -> Syntax:
+    """In double, the functions of angles are the package's own."""
+    if precision is not DOUBLE:
+        return precision.syntax
+    calls = {**precision.syntax.calls, "atan2": f"{package}_atan2"}
+    return replace(precision.syntax, calls=calls, sincos=f"{package}_sincos({{0}}, &{{1}}, &{{2}})")
+
+
 def _assign(assignment: Assignment, precision: Precision) -> str:
-    kind = "int" if assignment.kind == "condition" else precision.type
-    return f"const {kind} {assignment.name} = {assignment.text};"
+    return _FORMATS[assignment.kind].format(precision.type, assignment.name, assignment.text)
 
 
 def _stores(port: Port, stores: Sequence[Store], column_major: bool) -> tuple[str, ...]:
@@ -137,7 +151,7 @@ def _function(
     column_major: bool,
     precision: Precision = DOUBLE,
 ) -> Function:
-    listing = print_program(program, precision.syntax, scalar_names(kernel))
+    listing = print_program(program, _syntax(precision, options.package), scalar_names(kernel))
     scalar = precision.type
     prefix = f"{options.package}_"
     pointer = "*" if kernel.in_place else f"*{options.package.upper()}_RESTRICT "
@@ -220,6 +234,7 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
         "functions": tuple(functions),
         "shapes": (*_overlap(kernel), *shapes),
         "checked": bool(kernel.value.requirements),
+        "own_math": any(ins.op in _OWN for ins in kernel.jacobians.code),
         "fills": tuple((f"{options.package}_{name}_fill{p.suffix}", p.type) for p in precisions),
         **printed_batch(kernel, options),
     }
@@ -248,7 +263,7 @@ TARGET = Target(
     public=symbols,
     keywords={"C": C_KEYWORDS, "C++": CPP_KEYWORDS},
     # "linux" and "unix" are macros of compilers there.
-    reserved=words("status NULL NAN INFINITY linux unix").union(
+    reserved=words("status NULL NAN INFINITY linux unix sincos").union(
         SYNTAX.calls.values(), SINGLE.syntax.calls.values(), BATCH_NAMES
     ),
     files=HEADERS,
@@ -261,6 +276,7 @@ TARGET = Target(
         Sheet("c/package.h.j2", "c/{package}.h"),
         Sheet("c/batch.h.j2", "c/{package}_batch.h"),
         Sheet("c/lanes.h.j2", "c/{package}_lanes.h"),
+        Sheet("c/math.h.j2", "c/{package}_math.h"),
     ),
-    package_names={"polynomials": elementary_text()},
+    package_names={"lane_polynomials": elementary_text(), "polynomials": scalar_text()},
 )
