@@ -180,8 +180,8 @@ def _loaded(
 
 
 def _times(loaded: Sequence[Loaded], inputs: Array, plan: Plan) -> list[Time]:
-    buffers = [one.buffer() for one in loaded]
-    runs: list[Callable[[], None]] = [one.run(inputs, b) for one, b in zip(loaded, buffers, strict=True)]
+    shared = max((one.buffer() for one in loaded), key=lambda buffer: buffer.size)
+    runs: list[Callable[[], None]] = [one.run(inputs, shared) for one in loaded]
     measured = in_turn(runs, len(inputs), plan.rounds)
     return [
         Time(

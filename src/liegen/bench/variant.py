@@ -22,7 +22,9 @@ Flags = tuple[str, ...]
 FLAGS: Mapping[str, Flags] = {
     "plain": ("-O3", "-march=native"),
     "no errno": ("-O3", "-march=native", "-fno-math-errno"),
+    "scalar": ("-O3", "-march=native", "-fno-math-errno", "-fno-tree-slp-vectorize"),
     "fast math": ("-O3", "-march=native", "-ffast-math"),
+    "scalar fast math": ("-O3", "-march=native", "-ffast-math", "-fno-tree-slp-vectorize"),
 }
 
 
