@@ -11,9 +11,10 @@ from liegen.choice import ranked
 from liegen.derive import derive, lowered
 from liegen.differentiate import STRATEGIES, expressions, fused, jacobians, linearised
 from liegen.library import bearing_se3_gtsam, between_se3, between_so3, projection_cal3_ds2
-from liegen.manifolds import SE2
+from liegen.manifolds import R2, SE2
+from liegen.manifolds.functions import dot
 from liegen.program.kinds import kinds
-from liegen.program.passes import cse, dead, fold, signs
+from liegen.program.passes import cse, dead, fold, optimise, signs
 from liegen.verify.backends import program_evaluator
 from liegen.verify.draws import batch, draw_samples
 
@@ -61,6 +62,37 @@ def test_the_best_order_is_no_worse_than_any(function):
 def test_a_chain_of_eight_poses():
     assert derive(chain.plain).jacobians.operations <= 1700
     assert derive(half_chain.plain).jacobians.operations <= 850
+
+
+@function
+def radial(q: R3, K: R3):
+    """A pinhole with radial distortion."""
+    m = q[:2] / q[2]
+    r2 = dot(m, m)
+    return K[0] * (1 + r2 * (K[1] + K[2] * r2)) * m
+
+
+def test_a_function_of_one_number_has_one_slope():
+    """That of the distortion by r^2, for both rows of the Jacobian: 43 operations, 46 in reverse."""
+    kernel = derive(radial.plain)
+    assert kernel.passes[0].name == "lower, scalars first order"
+    reverse = jacobians(radial.plain, values := expressions(radial.plain), STRATEGIES["reverse"])
+    other, _ = optimise(lowered(radial.plain, values, reverse))
+    assert kernel.jacobians.operations < other.operations
+    assert kernel.jacobians.operations <= 43
+
+
+@function
+def sheared(q: R3, a: R2):
+    m = q[:2] / q[2]
+    return stack(a[0] * m[0] + a[1] * m[1], a[1] * m[0] - a[0] * m[1])
+
+
+def test_a_quotient_shares_what_is_in_front_of_it():
+    """(M / z) and (M / z) times -m, and not m / z too: the rows by q of a linear function of q.xy / q.z."""
+    kernel = derive(sheared.plain)
+    assert kernel.jacobians.op_counts()["div"] == 1
+    assert kernel.jacobians.operations <= 19
 
 
 def test_local_of_between_is_one_operation():

@@ -65,6 +65,17 @@ def markowitz(graph: Elimination, inner: Sequence[int]) -> Iterator[int]:
                 heappush(heap, (graph.cost(n), place[n], n))
 
 
+def scalars_first(graph: Elimination, inner: Sequence[int]) -> Iterable[int]:
+    """Functions of one number of one number are composed first, the rest goes from outputs to parameters."""
+
+    def scalar(v: int) -> bool:
+        around = (v, *graph.into.get(v, ()), *graph.out.get(v, ()))
+        return all(graph.numbers(n) == 1 for n in around)
+
+    first = {v: None for v in inner if scalar(v)}
+    return *first, *(v for v in reversed(inner) if v not in first)
+
+
 #: From the left a few rows meet one sparse factor after the other, and share what they have in common: SE(3)
 #: between takes 427 operations this way, 472 from the right. Of strategies that come to the
 #: same count the first one is taken.
@@ -72,6 +83,7 @@ STRATEGIES: Mapping[str, Strategy] = {
     "reverse": Strategy(reverse, product_from_left),
     "reverse, from the right": Strategy(reverse, product_from_right),
     "reverse, cheapest first": Strategy(reverse, product),
+    "scalars first": Strategy(scalars_first, product_from_left),
     "forward": Strategy(forward, product),
     "forward, from the left": Strategy(forward, product_from_left),
     "Markowitz": Strategy(markowitz, product_from_left),
@@ -103,6 +115,10 @@ class Elimination:
             self.columns[b] = self.columns.get(b, 0) + _columns(chain)
         self.into.setdefault(b, {})[a] = chain
         self.out.setdefault(a, {})[b] = chain
+
+    def numbers(self, v: int) -> int:
+        """How many the vertex has; 0 for a parameter."""
+        return max((_rows(chain) for chain in self.into.get(v, {}).values()), default=0)
 
     def cost(self, v: int) -> int:
         """About how many scalar products the elimination of v takes, dense blocks taken for granted."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from liegen.algebra import Scalar, call
-from liegen.algebra.linear import Matrix, column, diagonal, eye, matvec
+from liegen.algebra.linear import Chain, Matrix, column, diagonal, eye, matvec
 from liegen.algebra.linear import Vector as Coordinates
 
 from .form import Blocks
@@ -14,14 +14,15 @@ from .node import Operation, Value
 
 #: An entry of the result from the operands' entries.
 Elementwise = Callable[[Any], Scalar] | Callable[[Any, Any], Scalar]
-#: Its derivatives from the result's and the operands' entries.
+#: Its derivatives from the result's and the operands' entries; a tuple of factors is a product that may be
+#: multiplied out from the left, so that what is in front of it is shared.
 Partials = Callable[[Any, Any], tuple[Scalar, ...]] | Callable[[Any, Any, Any], tuple[Scalar, ...]]
 #: Value, derivatives (by a, by b), and how it is shown.
 ARITHMETIC: dict[str, tuple[Elementwise, Partials, str]] = {
     "add": (lambda a, b: a + b, lambda _r, _a, _b: (1, 1), "{0} + {1}"),
     "sub": (lambda a, b: a - b, lambda _r, _a, _b: (1, -1), "{0} - {1}"),
     "mul": (lambda a, b: a * b, lambda _r, a, b: (b, a), "{0} * {1}"),
-    "div": (lambda a, b: a / b, lambda r, _a, b: (1 / b, -r / b), "{0} / {1}"),
+    "div": (lambda a, b: a / b, lambda r, _a, b: (1 / b, (1 / b, -r)), "{0} / {1}"),
 }
 
 
@@ -39,12 +40,16 @@ def elementwise(
     def blocks(result: Coordinates, *coords: Coordinates) -> Blocks:
         assert partials is not None
         slopes = [partials(r, *entry) for r, entry in zip(result, entries(coords), strict=True)]
-        by_operand = [tuple(s[k] for s in slopes) for k in range(len(coords))]
-        return tuple(
-            (column(d) if len(c) == 1 else diagonal(d),) for c, d in zip(coords, by_operand, strict=True)
-        )
+        by_operand = ([s[k] for s in slopes] for k in range(len(coords)))
+        return tuple(_block(d, len(c)) for c, d in zip(coords, by_operand, strict=True))
 
     return Operation(name, cls, value, blocks if partials else None, show)
+
+
+def _block(slopes: Sequence[Any], size: int) -> Chain:
+    """The derivative by an operand that has an entry for each of the result, or one for all."""
+    *inner, last = zip(*(s if isinstance(s, tuple) else (s,) for s in slopes), strict=True)
+    return (*map(diagonal, inner), column(last) if size == 1 else diagonal(last))
 
 
 def comparison(cls: type[Value], name: str, show: str) -> Operation:
