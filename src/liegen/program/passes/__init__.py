@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from liegen.program.program import Program
 
+from .arrival import early
 from .contraction import contract
 from .dead_code import dead
 from .divisions import reciprocals
@@ -26,7 +27,7 @@ Pass = Callable[[Program], Program]
 #: Run in turn, again and again until nothing changes.
 PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
 #: Run once at the end.
-FINAL: tuple[Pass, ...] = (dead, contract, schedule)
+FINAL: tuple[Pass, ...] = (dead, contract, early, schedule)
 #: Rounds of ``PASSES`` at most.
 ROUNDS = 4
 
