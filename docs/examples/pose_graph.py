@@ -19,9 +19,9 @@ What a solver of your own takes from here is short:
 Without a file it makes a sphere: a robot winds up around it, with noisy odometry, and measures where it is
 relative to the ring below.
 
-Needs SciPy, and matplotlib for the picture (`pip install liegen[examples]`). The linear systems go to CHOLMOD
-where it is installed (`pip install liegen[cholesky]`), else to SciPy's LU, which takes longer. Where there is no
-C compiler the factors run as NumPy code.
+Needs SciPy, and matplotlib for the picture (`pip install liegen[examples]`). CHOLMOD solves the linear
+systems where it is installed (`pip install liegen[cholesky]`), else SciPy's LU, which takes longer. Where there
+is no C compiler the factors run as NumPy code.
 """
 
 from __future__ import annotations

@@ -207,6 +207,7 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     lines += [f"lanes {names.room}[LANES_ROOM({max(sizes.values())})];"]
     lines += [f"lanes_mask {names.held}[{bits}];"] if bits else []
     ahead = [f"{package}_ahead({a.name}, {a.size}, {names.n}, {names.k});" for a in kernel.arguments]
+    ahead += [f"{package}_ahead_to({name}, {size}, {names.n}, {names.k});" for name, size in sizes.items()]
     lines += _indented(names.stream, ahead)
     lines += [
         f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments

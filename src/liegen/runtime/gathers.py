@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def _expected(port: Port, indices: Indices) -> _Expected:
 
 def _take(out: Any, shapes: Sequence[tuple[int, ...]]) -> bool:
     """Whether C can write to all of the caller's arrays."""
-    given: tuple[Any, ...] = out if isinstance(out, tuple) else (out,)
+    given = cast("tuple[Any, ...]", out if isinstance(out, tuple) else (out,))
     return len(given) == len(shapes) and all(
         o is None or _takes(o, shape) for o, shape in zip(given, shapes, strict=True)
     )

@@ -106,8 +106,8 @@ def _columns(H: Any, *, lower: bool) -> Columns:
     dim = int(H.shape[0])
     if H.shape != (dim, dim):
         raise ValueError(f"H must be square, its shape is {H.shape}")
-    numbers: Array = np.arange(H.data.size, dtype=np.float64).reshape(H.data.shape)
-    places = type(H)((numbers, H.indices, H.indptr), shape=H.shape).tocsc()
+    numbers = np.arange(int(H.data.size), dtype=np.float64)
+    places = type(H)((numbers.reshape(H.data.shape), H.indices, H.indptr), shape=H.shape).tocsc()
     places.sort_indices()
     rows, owners = places.indices, np.repeat(np.arange(dim, dtype=np.int32), np.diff(places.indptr))
     if np.any((rows[1:] == rows[:-1]) & (owners[1:] == owners[:-1])):

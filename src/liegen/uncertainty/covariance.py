@@ -153,10 +153,10 @@ def sqrt_info(S: ArrayLike) -> Array:
 
 def packed(R: ArrayLike) -> Array:
     """The upper triangle of R (..., n, n) row by row, (..., n (n + 1) / 2): what ``noise="packed"`` takes."""
-    R = numbers(R, "R")
-    if R.ndim < 2 or R.shape[-1] != R.shape[-2]:
-        raise UncertaintyError(f"{here()}: R must have shape (..., n, n), got {R.shape}")
-    return np.ascontiguousarray(R[(..., *np.triu_indices(R.shape[-1]))])
+    rows = numbers(R, "R")
+    if rows.ndim < 2 or rows.shape[-1] != rows.shape[-2]:
+        raise UncertaintyError(f"{here()}: R must have shape (..., n, n), got {rows.shape}")
+    return np.ascontiguousarray(rows[(..., *np.triu_indices(rows.shape[-1]))])
 
 
 def whiten(h: ArrayLike, S: ArrayLike) -> Array:
