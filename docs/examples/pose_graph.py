@@ -20,8 +20,8 @@ Without a file it makes a sphere: a robot winds up around it, with noisy odometr
 relative to the ring below.
 
 Needs SciPy, and matplotlib for the picture (`pip install liegen[examples]`). CHOLMOD solves the linear
-systems where it is installed (`pip install liegen[cholesky]`), else SciPy's LU, which takes longer. Where there
-is no C compiler the factors run as NumPy code.
+systems where it is installed (`pip install liegen[cholesky]`), else SciPy's LU, which takes longer. Where
+there is no C compiler the factors run as NumPy code.
 """
 
 from __future__ import annotations
