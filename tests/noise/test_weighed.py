@@ -199,7 +199,9 @@ def test_header_and_explain_say_noise_loss_mode_and_frame():
 
 
 def test_bad_names_list_those_that_exist():
-    with pytest.raises(DefinitionError, match="unknown noise 'fulll'; choose from full, diagonal, isotropic"):
+    with pytest.raises(
+        DefinitionError, match="unknown noise 'fulll'; choose from full, packed, diagonal, isotropic"
+    ):
         between_se3.whitened("fulll")
     with pytest.raises(
         DefinitionError, match="unknown loss 'hubert'; choose from huber, pseudo-huber, cauchy"
