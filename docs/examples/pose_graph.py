@@ -13,13 +13,15 @@ What a solver of your own takes from here is short:
 1. `linearise`: ONE call of the compiled factor gives the whitened residuals and Jacobians of all edges. It
    reads the poses through the edge list, and writes `res_D_x`, a k x k block in the columns of pose i, and
    `res_D_y`, one in the columns of pose j, to where the sparse matrix has them.
-2. `retract`: the Jacobians are those of x Exp(d), so that is how a step d is applied (3D: rotation first).
+2. `liegen.SparseSolver` solves (J^T J + damping) d = -J^T r; what the pattern decides is done once.
+3. `retract`: the Jacobians are those of x Exp(d), so that is how a step d is applied (3D: rotation first).
 
 Without a file it makes a sphere: a robot winds up around it, with noisy odometry, and measures where it is
 relative to the ring below.
 
-Needs SciPy, and matplotlib for the picture (`pip install liegen[examples]`). Where there is no C compiler the
-factors run as NumPy code.
+Needs SciPy, and matplotlib for the picture (`pip install liegen[examples]`). CHOLMOD solves the linear
+systems where it is installed (`pip install liegen[cholesky]`), else SciPy's LU, which takes longer. Where
+there is no C compiler the factors run as NumPy code.
 """
 
 from __future__ import annotations
@@ -32,8 +34,7 @@ from pathlib import Path
 import click
 import numpy as np
 from g2o import Floats, G2oError, Graph, read_g2o
-from scipy.sparse import bsr_array, csc_array, dia_array
-from scipy.sparse.linalg import splu
+from scipy.sparse import bsr_array
 
 import liegen
 from liegen import library
@@ -154,7 +155,7 @@ def levenberg_marquardt(graph: Graph, tol: float = 1e-9, max_iterations: int = 1
     Converged: a step changes, or by its linear model would change, the error by a share of at most `tol`, or
     no number in the step is larger than `tol`.
     """
-    group, at = GROUPS[graph.group], linearise(graph)
+    group, at, solver = GROUPS[graph.group], linearise(graph), liegen.SparseSolver()
     jacobian, r = at(graph.poses)
     now = Iterate(0, graph.poses, half_square(r))
     if not np.isfinite(now.error):
@@ -162,7 +163,7 @@ def levenberg_marquardt(graph: Graph, tol: float = 1e-9, max_iterations: int = 1
     yield now
     while not now.converged and now.number < max_iterations:
         gradient = jacobian.T @ r
-        d = solve_damped((jacobian.T @ jacobian).tocsc(), -gradient, now.damping)
+        d = solver(jacobian.T @ jacobian, -gradient, now.damping)
         poses = group.retract(now.poses, d.reshape(-1, group.dim))
         jacobian_new, r_new = at(poses)
         error = half_square(r_new)
@@ -183,14 +184,6 @@ def levenberg_marquardt(graph: Graph, tol: float = 1e-9, max_iterations: int = 1
 
 def half_square(r: Floats) -> float:
     return 0.5 * float(r @ r)
-
-
-def solve_damped(H: csc_array, b: Floats, damping: float) -> Floats:
-    """Solve (H + damping diag H) d = b; H is symmetric and positive, so it needs no pivoting."""
-    diagonal = H.diagonal()
-    damped = (H + dia_array((damping * diagonal[None], [0]), shape=H.shape)).tocsc()
-    lu = splu(damped, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return lu.solve(b)
 
 
 # --- a graph to solve without a file, a picture, the command line -----------------------------------------
@@ -249,7 +242,7 @@ def main(file: Path | None, out: str, tol: float, max_iterations: int) -> None:
         click.echo(describe(graph, file))
         first, last = run(graph, tol, max_iterations)
         draw(graph, first, last, Path(out))
-    except (G2oError, RuntimeError, OSError) as error:
+    except (G2oError, RuntimeError, OSError, np.linalg.LinAlgError) as error:
         raise click.ClickException(str(error)) from error
     click.echo(f"picture: {out}")
     if not last.converged:

@@ -306,6 +306,25 @@ static void block_jacobians(
     res_D_y[11] = t153 * t156 + (t151 * t154 + t152 * t155);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y)
+{
+    liegen_factors_ahead(x, 7, n, k);
+    liegen_factors_ahead(y, 7, n, k);
+    liegen_factors_ahead(z, 3, n, k);
+    liegen_factors_ahead_to(res, 2, n, k);
+    liegen_factors_ahead_to(res_D_x, 12, n, k);
+    liegen_factors_ahead_to(res_D_y, 12, n, k);
+}
+
 int liegen_factors_bearing_se3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -334,6 +353,9 @@ int liegen_factors_bearing_se3_batch(
             lanes res_D_x_lanes[12];
             lanes res_D_y_lanes[12];
             lanes room[LANES_ROOM(12)];
+            if (stream) {
+                block_ahead(n, k, x, y, z, res, res_D_x, res_D_y);
+            }
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(y, 7, k, count, y_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);

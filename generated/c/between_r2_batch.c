@@ -53,6 +53,25 @@ static void block_jacobians(
     res_D_y[3] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in y,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_y)
+{
+    liegen_factors_ahead(x, 2, n, k);
+    liegen_factors_ahead(y, 2, n, k);
+    liegen_factors_ahead(z, 2, n, k);
+    liegen_factors_ahead_to(res, 2, n, k);
+    liegen_factors_ahead_to(res_D_x, 4, n, k);
+    liegen_factors_ahead_to(res_D_y, 4, n, k);
+}
+
 int liegen_factors_between_r2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -81,6 +100,9 @@ int liegen_factors_between_r2_batch(
             lanes res_D_x_lanes[4];
             lanes res_D_y_lanes[4];
             lanes room[LANES_ROOM(4)];
+            if (stream) {
+                block_ahead(n, k, x, y, z, res, res_D_x, res_D_y);
+            }
             liegen_factors_load(x, 2, k, count, x_lanes);
             liegen_factors_load(y, 2, k, count, y_lanes);
             liegen_factors_load(z, 2, k, count, z_lanes);

@@ -303,7 +303,7 @@ static inline lanes lanes_acos(lanes x) { return lanes_atan2(lanes_sqrt((1.0 - x
  * does not read first what is overwritten whole.
  */
 #ifndef LIEGEN_FACTORS_STREAM_BYTES
-#define LIEGEN_FACTORS_STREAM_BYTES 8388608
+#define LIEGEN_FACTORS_STREAM_BYTES 2097152
 #endif
 
 static inline int lanes_streams(ptrdiff_t n, int size)
@@ -427,6 +427,13 @@ static inline void lanes_from_rows(lanes *to, const double *const *from, ptrdiff
 #endif
 }
 
+/* Where rows are best cut into pieces of LANES_ROW numbers, so that none of them lies in two lines. */
+static inline int lanes_first(const double *to, ptrdiff_t stride)
+{
+    const int phase = (int)((uintptr_t)to / sizeof(double) % LANES_ROW);
+    return phase != 0 && stride % LANES_ROW == 0 ? LANES_ROW - phase : 0;
+}
+
 static inline void lanes_to_rows(double *to, ptrdiff_t stride, const lanes *from)
 {
     const lanes a = LANES_EVEN(from[0], from[1]), b = LANES_ODD(from[0], from[1]);
@@ -455,6 +462,47 @@ static inline lanes lanes_gather(const double *const *from, ptrdiff_t at)
     return v;
 }
 #endif
+
+/*
+ * Asks for what the next block will read and write: the processor by itself looks ahead within a page only, not
+ * along an index, and along a few arrays only.
+ */
+#if defined(__GNUC__)
+#define LANES_FETCH(from) __builtin_prefetch(from)
+#define LANES_IN_PLACE inline __attribute__((always_inline)) /* gcc leaves out calls that only fetch */
+#else
+#define LANES_FETCH(from) (void)(from)
+#define LANES_IN_PLACE inline
+#endif
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#define LANES_APART __attribute__((noipa)) /* in the loop it would be in the way of what else is unrolled */
+#elif defined(__GNUC__)
+#define LANES_APART __attribute__((noinline))
+#else
+#define LANES_APART
+#endif
+
+static LANES_IN_PLACE void liegen_factors_ahead(liegen_factors_in in, int size, ptrdiff_t n, ptrdiff_t k)
+{
+    const ptrdiff_t next = k + LANES;
+    if (n - next < LANES || in.stride == 0) return;
+    if (in.stride == 1 && in.index == NULL)
+        for (int c = 0; c < size; ++c) LANES_FETCH(in.data + next + c * in.comp);
+    else if (in.comp == 1)
+        for (ptrdiff_t at = next; at < next + LANES; ++at) {
+            const double *from = in.data + (in.index != NULL ? in.index[at] : at) * in.stride;
+            for (int c = 0; c < size; c += 8) LANES_FETCH(from + c);
+            if (in.index != NULL) LANES_FETCH(from + size - 1);
+        }
+}
+
+/* Rows are written past the caches. */
+static LANES_IN_PLACE void liegen_factors_ahead_to(liegen_factors_out out, int size, ptrdiff_t n, ptrdiff_t k)
+{
+    const ptrdiff_t next = k + LANES;
+    if (out.data == NULL || out.stride != 1 || n - next < LANES) return;
+    for (int c = 0; c < size; ++c) LANES_FETCH(out.data + next + c * out.comp);
+}
 
 /* Numbers of the factors k .. k + count - 1; lanes beyond them hold the last of them. */
 static inline void liegen_factors_load(liegen_factors_in in, int size, ptrdiff_t k, int count, lanes *to)
@@ -508,8 +556,10 @@ static inline void liegen_factors_store(
         double *rows = direct ? to : (double *)room + phase;
         const ptrdiff_t stride = direct ? out.stride : size;
         if (past && pen->to == to) memcpy(room, pen->kept, sizeof pen->kept);
-        for (int c = 0; c < size - LANES_ROW; c += LANES_ROW) lanes_to_rows(rows + c, stride, from + c);
-        lanes_to_rows(rows + size - LANES_ROW, stride, from + size - LANES_ROW);
+        int c = size >= 8 * LANES_ROW ? lanes_first(rows, stride) : 0; /* short rows: in line, without a loop */
+        if (c > 0) lanes_to_rows(rows, stride, from);
+        for (; c <= size - LANES_ROW; c += LANES_ROW) lanes_to_rows(rows + c, stride, from + c);
+        if (c < size) lanes_to_rows(rows + size - LANES_ROW, stride, from + size - LANES_ROW);
         if (past)
             lanes_write(pen, to - phase, (const double *)room, phase, phase + (ptrdiff_t)count * size);
         else

@@ -42,6 +42,21 @@ static void block_jacobians(
     res_D_x[3] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x)
+{
+    liegen_factors_ahead(x, 2, n, k);
+    liegen_factors_ahead(z, 2, n, k);
+    liegen_factors_ahead_to(res, 2, n, k);
+    liegen_factors_ahead_to(res_D_x, 4, n, k);
+}
+
 int liegen_factors_prior_r2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -65,6 +80,9 @@ int liegen_factors_prior_r2_batch(
             lanes res_lanes[2];
             lanes res_D_x_lanes[4];
             lanes room[LANES_ROOM(4)];
+            if (stream) {
+                block_ahead(n, k, x, z, res, res_D_x);
+            }
             liegen_factors_load(x, 2, k, count, x_lanes);
             liegen_factors_load(z, 2, k, count, z_lanes);
             if (jacobians) {

@@ -146,6 +146,21 @@ static void block_jacobians(
     res_D_x[3] = t36 * t68 + t33 * t66;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x)
+{
+    liegen_factors_ahead(x, 3, n, k);
+    liegen_factors_ahead(z, 3, n, k);
+    liegen_factors_ahead_to(res, 2, n, k);
+    liegen_factors_ahead_to(res_D_x, 4, n, k);
+}
+
 int liegen_factors_prior_s2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -169,6 +184,9 @@ int liegen_factors_prior_s2_batch(
             lanes res_lanes[2];
             lanes res_D_x_lanes[4];
             lanes room[LANES_ROOM(4)];
+            if (stream) {
+                block_ahead(n, k, x, z, res, res_D_x);
+            }
             liegen_factors_load(x, 3, k, count, x_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians) {

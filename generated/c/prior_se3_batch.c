@@ -211,6 +211,21 @@ static void block_jacobians(
     res_D_x[35] = t49;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x)
+{
+    liegen_factors_ahead(x, 7, n, k);
+    liegen_factors_ahead(z, 7, n, k);
+    liegen_factors_ahead_to(res, 6, n, k);
+    liegen_factors_ahead_to(res_D_x, 36, n, k);
+}
+
 int liegen_factors_prior_se3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -234,6 +249,9 @@ int liegen_factors_prior_se3_batch(
             lanes res_lanes[6];
             lanes res_D_x_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, x, z, res, res_D_x);
+            }
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(z, 7, k, count, z_lanes);
             if (jacobians) {

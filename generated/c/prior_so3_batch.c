@@ -96,6 +96,21 @@ static void block_jacobians(
     res_D_x[8] = t19 + t13 * (t13 * t18);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x)
+{
+    liegen_factors_ahead(x, 4, n, k);
+    liegen_factors_ahead(z, 4, n, k);
+    liegen_factors_ahead_to(res, 3, n, k);
+    liegen_factors_ahead_to(res_D_x, 9, n, k);
+}
+
 int liegen_factors_prior_so3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -119,6 +134,9 @@ int liegen_factors_prior_so3_batch(
             lanes res_lanes[3];
             lanes res_D_x_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, x, z, res, res_D_x);
+            }
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
             if (jacobians) {

@@ -165,6 +165,27 @@ static void block_jacobians(
     res_D_p[5] = t5 * t49 - t16 * t50 - t26 * t51;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in p,
+    liegen_factors_in K,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_p)
+{
+    liegen_factors_ahead(x, 7, n, k);
+    liegen_factors_ahead(p, 3, n, k);
+    liegen_factors_ahead(K, 5, n, k);
+    liegen_factors_ahead(z, 2, n, k);
+    liegen_factors_ahead_to(res, 2, n, k);
+    liegen_factors_ahead_to(res_D_x, 12, n, k);
+    liegen_factors_ahead_to(res_D_p, 6, n, k);
+}
+
 int liegen_factors_projection_cal3_bundler_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -196,6 +217,9 @@ int liegen_factors_projection_cal3_bundler_batch(
             lanes res_D_p_lanes[6];
             lanes room[LANES_ROOM(12)];
             lanes_mask held[1];
+            if (stream) {
+                block_ahead(n, k, x, p, K, z, res, res_D_x, res_D_p);
+            }
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(p, 3, k, count, p_lanes);
             liegen_factors_load(K, 5, k, count, K_lanes);

@@ -159,6 +159,29 @@ static void block_jacobians(
     res_D_K[9] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_factors_in x,
+    liegen_factors_in p,
+    liegen_factors_in K,
+    liegen_factors_in z,
+    liegen_factors_out res,
+    liegen_factors_out res_D_x,
+    liegen_factors_out res_D_p,
+    liegen_factors_out res_D_K)
+{
+    liegen_factors_ahead(x, 7, n, k);
+    liegen_factors_ahead(p, 3, n, k);
+    liegen_factors_ahead(K, 5, n, k);
+    liegen_factors_ahead(z, 2, n, k);
+    liegen_factors_ahead_to(res, 2, n, k);
+    liegen_factors_ahead_to(res_D_x, 12, n, k);
+    liegen_factors_ahead_to(res_D_p, 6, n, k);
+    liegen_factors_ahead_to(res_D_K, 10, n, k);
+}
+
 int liegen_factors_sfm_cal3_s2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
@@ -193,6 +216,9 @@ int liegen_factors_sfm_cal3_s2_batch(
             lanes res_D_K_lanes[10];
             lanes room[LANES_ROOM(12)];
             lanes_mask held[1];
+            if (stream) {
+                block_ahead(n, k, x, p, K, z, res, res_D_x, res_D_p, res_D_K);
+            }
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(p, 3, k, count, p_lanes);
             liegen_factors_load(K, 5, k, count, K_lanes);

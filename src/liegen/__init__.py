@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from .manifolds.vector import stack as stack
     from .runtime import Compiled as Compiled
     from .runtime import NormalEquations as NormalEquations
+    from .runtime import SparseSolver as SparseSolver
     from .runtime import compile as compile
     from .trace import frames as frames
     from .trace import outputs as outputs
@@ -84,7 +85,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
         "sqrt", "tan", "where",
     ),
     ".manifolds.vector": ("norm", "stack"),
-    ".runtime": ("Compiled", "NormalEquations", "compile"),
+    ".runtime": ("Compiled", "NormalEquations", "SparseSolver", "compile"),
     ".trace": ("frames", "outputs", "require"),
 }  # fmt: skip
 _HOME = {name: module for module, names in _NAMES.items() for name in names}

@@ -66,7 +66,7 @@ def factor(
     layouts of single arguments; Jacobians do not depend on it. ``normalise`` brings quaternions, (cos, sin)
     and directions of the arguments to unit length as they are read.
 
-    ``noise`` ("full", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
+    ``noise`` ("full", "packed", "diagonal", "isotropic") adds the keyword ``sqrt_info``, S with S^T S =
     covariance^-1, in the frame of the residual: an upper triangular matrix (..., m, m) whose lower part is
     not read, or 1 / standard deviation (..., m) or (..., 1). ``loss`` (see ``liegen.noise.LOSSES``) adds
     its parameters. Outputs are then those of least squares on the cost 1/2 rho(|S r|^2), weighed by

@@ -46,6 +46,7 @@ def test_unknown_names_list_those_that_exist(tmp_path: Path):
     ("noise", "kind", "meaning"),
     [
         ("full", "3 x 3 upper triangular", "square root S of the information, S^T S = covariance^-1"),
+        ("packed", "R6 packed upper triangle", "square root S of the information, S^T S = covariance^-1"),
         ("diagonal", "R3 diagonal", "1 / standard deviation of each entry"),
         ("isotropic", "R1 isotropic", "1 / standard deviation, the same of every entry"),
     ],

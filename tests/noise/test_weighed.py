@@ -15,6 +15,7 @@ from liegen.emit import render
 from liegen.library import between_se2, between_se3, prior_r3
 from liegen.noise import LOSSES, MODES, NOISES
 from liegen.program.rewrite import Builder
+from liegen.uncertainty import packed
 from liegen.verify import verify
 from liegen.verify.backends import load_package
 from liegen.verify.mutate import mutants
@@ -36,6 +37,7 @@ S = RNG.normal(size=(6, 6))
     ("noise", "given", "matrix"),
     [
         ("full", S, np.triu(S)),
+        ("packed", packed(S), np.triu(S)),
         ("diagonal", S[0], np.diag(S[0])),
         ("isotropic", S[0, :1], S[0, 0] * np.eye(6)),
     ],
@@ -197,7 +199,9 @@ def test_header_and_explain_say_noise_loss_mode_and_frame():
 
 
 def test_bad_names_list_those_that_exist():
-    with pytest.raises(DefinitionError, match="unknown noise 'fulll'; choose from full, diagonal, isotropic"):
+    with pytest.raises(
+        DefinitionError, match="unknown noise 'fulll'; choose from full, packed, diagonal, isotropic"
+    ):
         between_se3.whitened("fulll")
     with pytest.raises(
         DefinitionError, match="unknown loss 'hubert'; choose from huber, pseudo-huber, cauchy"

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 import pickle
 
 import numpy as np
 import pytest
 from runtime_factors import arguments, between, pixel, robust, rotated
+
+import liegen
+from compiler_tools import needs_compiler
+from liegen.runtime import compiled as module
 
 N, EDGES = 12, 31
 
@@ -53,6 +58,36 @@ def test_matrices_and_single_numbers(compiled, edges):
     close(gathered, k.jacobians(x[i], x[j], **{**given, "sqrt_info": given["sqrt_info"][which]}))
     turned = np.swapaxes(np.swapaxes(given["sqrt_info"], 1, 2).copy(), 1, 2)  # column-major
     close(k.indexed(x=i, y=j, sqrt_info=which).jacobians(x, x, **{**given, "sqrt_info": turned}), gathered)
+
+
+@needs_compiler
+def test_usual_arrays_take_the_short_way(monkeypatch, edges):
+    def unusual(*_):
+        def evaluate(*_, out=None):
+            raise AssertionError("the long way")
+
+        return evaluate
+
+    i, j = edges
+    k, x = liegen.compile(robust), poses()
+    given = arguments(robust, (EDGES,))[1]
+    expected = k.jacobians(x[i], x[j], **given)
+    monkeypatch.setattr(module, "batch_evaluator", unusual)
+    e = k.indexed(x=i, y=j)
+    gc.collect()  # what NumPy points to lives on
+    close(e.jacobians(x, x, **given), expected)
+    close([e(x, x, **given)], expected[:1])
+    close(k.indexed(x=i).jacobians(x, x[j], **given), expected)
+    blocks, res = np.empty((EDGES, 2, 6, 6)), np.empty((EDGES, 8))[:, 1:7]
+    made = e.jacobians(x, x, **given, out=(res, blocks[:, 0], blocks[:, 1]))
+    assert made.res is res
+    close([res, blocks[:, 0], blocks[:, 1]], expected)
+    for wrong in (x[:, ::-1], x.astype(np.float32), x[: i.max()], x[None]):
+        with pytest.raises(AssertionError, match="the long way"):
+            e(wrong, x, **given)
+    for wrong in (np.empty((EDGES, 6), np.float32), np.empty((EDGES + 1, 6)), [None]):
+        with pytest.raises(AssertionError, match="the long way"):
+            e(x, x, **given, out=wrong)
 
 
 @pytest.mark.parametrize("change", [

@@ -112,6 +112,13 @@ def test_samples_repeat_with_their_seed():
         uncertainty.sample(z, S, 5)
 
 
+def test_packed_is_the_upper_triangle_row_by_row():
+    R = np.arange(18.0).reshape(2, 3, 3)
+    found = uncertainty.packed(R)
+    np.testing.assert_array_equal(found[1], [9, 10, 11, 13, 14, 17])
+    assert found.flags.c_contiguous
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 6, 9])
 def test_sqrt_info_is_upper_triangular(n):
     S = spd(n, rng(), np.geomspace(1e-4, 1e3, n))
@@ -152,6 +159,7 @@ BAD = {
         r"\(36,\); reshape it: np.reshape\(S, \(6, 6\)\)",
     ),
     "sigmas": (lambda: uncertainty.sample(T3, np.ones(6), rng()), r"np.diag\(sigmas\*\*2\)"),
+    "packed, not square": (lambda: uncertainty.packed(np.ones((3, 2))), r"\(\.\.\., n, n\), got \(3, 2\)"),
     "not square": (lambda: uncertainty.sqrt_info(np.ones((2, 3))), r"\(\.\.\., n, n\).*\(2, 3\)"),
     "joint size": (
         lambda: uncertainty.of_between(T3, S6),

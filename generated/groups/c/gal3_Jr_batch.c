@@ -234,6 +234,17 @@ static void block_value(
     out[99] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(d, 10, n, k);
+    liegen_groups_ahead_to(out, 100, n, k);
+}
+
 int liegen_groups_gal3_Jr_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -251,6 +262,9 @@ int liegen_groups_gal3_Jr_batch(
             lanes d_lanes[10];
             lanes out_lanes[100];
             lanes room[LANES_ROOM(100)];
+            if (stream) {
+                block_ahead(n, k, d, out);
+            }
             liegen_groups_load(d, 10, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

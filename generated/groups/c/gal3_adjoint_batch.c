@@ -152,6 +152,17 @@ static void block_value(
     out[99] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(x, 11, n, k);
+    liegen_groups_ahead_to(out, 100, n, k);
+}
+
 int liegen_groups_gal3_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -169,6 +180,9 @@ int liegen_groups_gal3_adjoint_batch(
             lanes x_lanes[11];
             lanes out_lanes[100];
             lanes room[LANES_ROOM(100)];
+            if (stream) {
+                block_ahead(n, k, x, out);
+            }
             liegen_groups_load(x, 11, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

@@ -381,6 +381,23 @@ static void block_jacobians(
     out_D_y[99] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 11, n, k);
+    liegen_groups_ahead(y, 11, n, k);
+    liegen_groups_ahead_to(out, 11, n, k);
+    liegen_groups_ahead_to(out_D_x, 100, n, k);
+    liegen_groups_ahead_to(out_D_y, 100, n, k);
+}
+
 int liegen_groups_gal3_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -407,6 +424,9 @@ int liegen_groups_gal3_between_batch(
             lanes out_D_x_lanes[100];
             lanes out_D_y_lanes[100];
             lanes room[LANES_ROOM(100)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 11, k, count, x_lanes);
             liegen_groups_load(y, 11, k, count, y_lanes);
             if (jacobians) {

@@ -535,6 +535,23 @@ static void block_jacobians(
     out_D_d[99] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(x, 11, n, k);
+    liegen_groups_ahead(d, 10, n, k);
+    liegen_groups_ahead_to(out, 11, n, k);
+    liegen_groups_ahead_to(out_D_x, 100, n, k);
+    liegen_groups_ahead_to(out_D_d, 100, n, k);
+}
+
 int liegen_groups_gal3_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -561,6 +578,9 @@ int liegen_groups_gal3_retract_batch(
             lanes out_D_x_lanes[100];
             lanes out_D_d_lanes[100];
             lanes room[LANES_ROOM(100)];
+            if (stream) {
+                block_ahead(n, k, x, d, out, out_D_x, out_D_d);
+            }
             liegen_groups_load(x, 11, k, count, x_lanes);
             liegen_groups_load(d, 10, k, count, d_lanes);
             if (jacobians) {

@@ -170,6 +170,17 @@ static void block_value(
     out[80] = t62;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(d, 9, n, k);
+    liegen_groups_ahead_to(out, 81, n, k);
+}
+
 int liegen_groups_se23_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -187,6 +198,9 @@ int liegen_groups_se23_Jr_inv_batch(
             lanes d_lanes[9];
             lanes out_lanes[81];
             lanes room[LANES_ROOM(81)];
+            if (stream) {
+                block_ahead(n, k, d, out);
+            }
             liegen_groups_load(d, 9, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

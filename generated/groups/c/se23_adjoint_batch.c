@@ -128,6 +128,17 @@ static void block_value(
     out[80] = t20;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(x, 10, n, k);
+    liegen_groups_ahead_to(out, 81, n, k);
+}
+
 int liegen_groups_se23_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -145,6 +156,9 @@ int liegen_groups_se23_adjoint_batch(
             lanes x_lanes[10];
             lanes out_lanes[81];
             lanes room[LANES_ROOM(81)];
+            if (stream) {
+                block_ahead(n, k, x, out);
+            }
             liegen_groups_load(x, 10, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

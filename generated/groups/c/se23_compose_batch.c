@@ -312,6 +312,23 @@ static void block_jacobians(
     out_D_y[80] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 10, n, k);
+    liegen_groups_ahead(y, 10, n, k);
+    liegen_groups_ahead_to(out, 10, n, k);
+    liegen_groups_ahead_to(out_D_x, 81, n, k);
+    liegen_groups_ahead_to(out_D_y, 81, n, k);
+}
+
 int liegen_groups_se23_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -338,6 +355,9 @@ int liegen_groups_se23_compose_batch(
             lanes out_D_x_lanes[81];
             lanes out_D_y_lanes[81];
             lanes room[LANES_ROOM(81)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 10, k, count, x_lanes);
             liegen_groups_load(y, 10, k, count, y_lanes);
             if (jacobians) {

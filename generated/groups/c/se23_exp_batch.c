@@ -251,6 +251,19 @@ static void block_jacobians(
     out_D_d[80] = t61;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(d, 9, n, k);
+    liegen_groups_ahead_to(out, 10, n, k);
+    liegen_groups_ahead_to(out_D_d, 81, n, k);
+}
+
 int liegen_groups_se23_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -272,6 +285,9 @@ int liegen_groups_se23_exp_batch(
             lanes out_lanes[10];
             lanes out_D_d_lanes[81];
             lanes room[LANES_ROOM(81)];
+            if (stream) {
+                block_ahead(n, k, d, out, out_D_d);
+            }
             liegen_groups_load(d, 9, k, count, d_lanes);
             if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);

@@ -255,6 +255,19 @@ static void block_jacobians(
     out_D_x[80] = t39;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x)
+{
+    liegen_groups_ahead(x, 10, n, k);
+    liegen_groups_ahead_to(out, 9, n, k);
+    liegen_groups_ahead_to(out_D_x, 81, n, k);
+}
+
 int liegen_groups_se23_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -276,6 +289,9 @@ int liegen_groups_se23_log_batch(
             lanes out_lanes[9];
             lanes out_D_x_lanes[81];
             lanes room[LANES_ROOM(81)];
+            if (stream) {
+                block_ahead(n, k, x, out, out_D_x);
+            }
             liegen_groups_load(x, 10, k, count, x_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);

@@ -436,6 +436,23 @@ static void block_jacobians(
     out_D_d[80] = t88;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(x, 10, n, k);
+    liegen_groups_ahead(d, 9, n, k);
+    liegen_groups_ahead_to(out, 10, n, k);
+    liegen_groups_ahead_to(out_D_x, 81, n, k);
+    liegen_groups_ahead_to(out_D_d, 81, n, k);
+}
+
 int liegen_groups_se23_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -462,6 +479,9 @@ int liegen_groups_se23_retract_batch(
             lanes out_D_x_lanes[81];
             lanes out_D_d_lanes[81];
             lanes room[LANES_ROOM(81)];
+            if (stream) {
+                block_ahead(n, k, x, d, out, out_D_x, out_D_d);
+            }
             liegen_groups_load(x, 10, k, count, x_lanes);
             liegen_groups_load(d, 9, k, count, d_lanes);
             if (jacobians) {

@@ -43,6 +43,17 @@ static void block_value(
     out[8] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(d, 3, n, k);
+    liegen_groups_ahead_to(out, 9, n, k);
+}
+
 int liegen_groups_se2_Jl_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -60,6 +71,9 @@ int liegen_groups_se2_Jl_batch(
             lanes d_lanes[3];
             lanes out_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, d, out);
+            }
             liegen_groups_load(d, 3, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

@@ -71,6 +71,19 @@ static void block_jacobians(
     out_D_d[8] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(d, 3, n, k);
+    liegen_groups_ahead_to(out, 4, n, k);
+    liegen_groups_ahead_to(out_D_d, 9, n, k);
+}
+
 int liegen_groups_se2_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -92,6 +105,9 @@ int liegen_groups_se2_exp_batch(
             lanes out_lanes[4];
             lanes out_D_d_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, d, out, out_D_d);
+            }
             liegen_groups_load(d, 3, k, count, d_lanes);
             if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);

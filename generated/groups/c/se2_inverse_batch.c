@@ -52,6 +52,19 @@ static void block_jacobians(
     out_D_x[8] = lanes_of(-1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x)
+{
+    liegen_groups_ahead(x, 4, n, k);
+    liegen_groups_ahead_to(out, 4, n, k);
+    liegen_groups_ahead_to(out_D_x, 9, n, k);
+}
+
 int liegen_groups_se2_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -73,6 +86,9 @@ int liegen_groups_se2_inverse_batch(
             lanes out_lanes[4];
             lanes out_D_x_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, x, out, out_D_x);
+            }
             liegen_groups_load(x, 4, k, count, x_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);

@@ -95,6 +95,23 @@ static void block_jacobians(
     out_D_d[8] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(x, 4, n, k);
+    liegen_groups_ahead(d, 3, n, k);
+    liegen_groups_ahead_to(out, 4, n, k);
+    liegen_groups_ahead_to(out_D_x, 9, n, k);
+    liegen_groups_ahead_to(out_D_d, 9, n, k);
+}
+
 int liegen_groups_se2_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -121,6 +138,9 @@ int liegen_groups_se2_retract_batch(
             lanes out_D_x_lanes[9];
             lanes out_D_d_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, x, d, out, out_D_x, out_D_d);
+            }
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(d, 3, k, count, d_lanes);
             if (jacobians) {

@@ -107,6 +107,17 @@ static void block_value(
     out[35] = t47;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(d, 6, n, k);
+    liegen_groups_ahead_to(out, 36, n, k);
+}
+
 int liegen_groups_se3_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -124,6 +135,9 @@ int liegen_groups_se3_Jr_inv_batch(
             lanes d_lanes[6];
             lanes out_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, d, out);
+            }
             liegen_groups_load(d, 6, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

@@ -80,6 +80,17 @@ static void block_value(
     out[35] = t20;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(x, 7, n, k);
+    liegen_groups_ahead_to(out, 36, n, k);
+}
+
 int liegen_groups_se3_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -97,6 +108,9 @@ int liegen_groups_se3_adjoint_batch(
             lanes x_lanes[7];
             lanes out_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, x, out);
+            }
             liegen_groups_load(x, 7, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

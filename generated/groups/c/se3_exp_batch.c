@@ -171,6 +171,19 @@ static void block_jacobians(
     out_D_d[35] = t44;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(d, 6, n, k);
+    liegen_groups_ahead_to(out, 7, n, k);
+    liegen_groups_ahead_to(out_D_d, 36, n, k);
+}
+
 int liegen_groups_se3_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -192,6 +205,9 @@ int liegen_groups_se3_exp_batch(
             lanes out_lanes[7];
             lanes out_D_d_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, d, out, out_D_d);
+            }
             liegen_groups_load(d, 6, k, count, d_lanes);
             if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);

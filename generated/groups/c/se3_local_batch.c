@@ -266,6 +266,23 @@ static void block_jacobians(
     out_D_y[35] = t49;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 7, n, k);
+    liegen_groups_ahead(y, 7, n, k);
+    liegen_groups_ahead_to(out, 6, n, k);
+    liegen_groups_ahead_to(out_D_x, 36, n, k);
+    liegen_groups_ahead_to(out_D_y, 36, n, k);
+}
+
 int liegen_groups_se3_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -292,6 +309,9 @@ int liegen_groups_se3_local_batch(
             lanes out_D_x_lanes[36];
             lanes out_D_y_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(y, 7, k, count, y_lanes);
             if (jacobians) {

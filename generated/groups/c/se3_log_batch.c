@@ -172,6 +172,19 @@ static void block_jacobians(
     out_D_x[35] = t41;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x)
+{
+    liegen_groups_ahead(x, 7, n, k);
+    liegen_groups_ahead_to(out, 6, n, k);
+    liegen_groups_ahead_to(out_D_x, 36, n, k);
+}
+
 int liegen_groups_se3_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -193,6 +206,9 @@ int liegen_groups_se3_log_batch(
             lanes out_lanes[6];
             lanes out_D_x_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, x, out, out_D_x);
+            }
             liegen_groups_load(x, 7, k, count, x_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);

@@ -263,6 +263,23 @@ static void block_jacobians(
     out_D_d[35] = t71;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(x, 7, n, k);
+    liegen_groups_ahead(d, 6, n, k);
+    liegen_groups_ahead_to(out, 7, n, k);
+    liegen_groups_ahead_to(out_D_x, 36, n, k);
+    liegen_groups_ahead_to(out_D_d, 36, n, k);
+}
+
 int liegen_groups_se3_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -289,6 +306,9 @@ int liegen_groups_se3_retract_batch(
             lanes out_D_x_lanes[36];
             lanes out_D_d_lanes[36];
             lanes room[LANES_ROOM(36)];
+            if (stream) {
+                block_ahead(n, k, x, d, out, out_D_x, out_D_d);
+            }
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(d, 6, k, count, d_lanes);
             if (jacobians) {

@@ -126,6 +126,23 @@ static void block_jacobians(
     out_D_p[8] = t27;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in p,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_p)
+{
+    liegen_groups_ahead(x, 7, n, k);
+    liegen_groups_ahead(p, 3, n, k);
+    liegen_groups_ahead_to(out, 3, n, k);
+    liegen_groups_ahead_to(out_D_x, 18, n, k);
+    liegen_groups_ahead_to(out_D_p, 9, n, k);
+}
+
 int liegen_groups_se3_transform_to_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -152,6 +169,9 @@ int liegen_groups_se3_transform_to_batch(
             lanes out_D_x_lanes[18];
             lanes out_D_p_lanes[9];
             lanes room[LANES_ROOM(18)];
+            if (stream) {
+                block_ahead(n, k, x, p, out, out_D_x, out_D_p);
+            }
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians) {

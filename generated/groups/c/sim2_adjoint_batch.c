@@ -40,6 +40,17 @@ static void block_value(
     out[15] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(x, 5, n, k);
+    liegen_groups_ahead_to(out, 16, n, k);
+}
+
 int liegen_groups_sim2_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -57,6 +68,9 @@ int liegen_groups_sim2_adjoint_batch(
             lanes x_lanes[5];
             lanes out_lanes[16];
             lanes room[LANES_ROOM(16)];
+            if (stream) {
+                block_ahead(n, k, x, out);
+            }
             liegen_groups_load(x, 5, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

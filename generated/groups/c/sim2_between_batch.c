@@ -105,6 +105,23 @@ static void block_jacobians(
     out_D_y[15] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 5, n, k);
+    liegen_groups_ahead(y, 5, n, k);
+    liegen_groups_ahead_to(out, 5, n, k);
+    liegen_groups_ahead_to(out_D_x, 16, n, k);
+    liegen_groups_ahead_to(out_D_y, 16, n, k);
+}
+
 int liegen_groups_sim2_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -131,6 +148,9 @@ int liegen_groups_sim2_between_batch(
             lanes out_D_x_lanes[16];
             lanes out_D_y_lanes[16];
             lanes room[LANES_ROOM(16)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 5, k, count, x_lanes);
             liegen_groups_load(y, 5, k, count, y_lanes);
             if (jacobians) {

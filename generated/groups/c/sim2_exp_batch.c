@@ -212,6 +212,19 @@ static void block_jacobians(
     out_D_d[15] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(d, 4, n, k);
+    liegen_groups_ahead_to(out, 5, n, k);
+    liegen_groups_ahead_to(out_D_d, 16, n, k);
+}
+
 int liegen_groups_sim2_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -233,6 +246,9 @@ int liegen_groups_sim2_exp_batch(
             lanes out_lanes[5];
             lanes out_D_d_lanes[16];
             lanes room[LANES_ROOM(16)];
+            if (stream) {
+                block_ahead(n, k, d, out, out_D_d);
+            }
             liegen_groups_load(d, 4, k, count, d_lanes);
             if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);

@@ -250,6 +250,23 @@ static void block_jacobians(
     out_D_d[15] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(x, 5, n, k);
+    liegen_groups_ahead(d, 4, n, k);
+    liegen_groups_ahead_to(out, 5, n, k);
+    liegen_groups_ahead_to(out_D_x, 16, n, k);
+    liegen_groups_ahead_to(out_D_d, 16, n, k);
+}
+
 int liegen_groups_sim2_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -276,6 +293,9 @@ int liegen_groups_sim2_retract_batch(
             lanes out_D_x_lanes[16];
             lanes out_D_d_lanes[16];
             lanes room[LANES_ROOM(16)];
+            if (stream) {
+                block_ahead(n, k, x, d, out, out_D_x, out_D_d);
+            }
             liegen_groups_load(x, 5, k, count, x_lanes);
             liegen_groups_load(d, 4, k, count, d_lanes);
             if (jacobians) {

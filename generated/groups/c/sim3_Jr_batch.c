@@ -198,6 +198,17 @@ static void block_value(
     out[48] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(d, 7, n, k);
+    liegen_groups_ahead_to(out, 49, n, k);
+}
+
 int liegen_groups_sim3_Jr_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -215,6 +226,9 @@ int liegen_groups_sim3_Jr_batch(
             lanes d_lanes[7];
             lanes out_lanes[49];
             lanes room[LANES_ROOM(49)];
+            if (stream) {
+                block_ahead(n, k, d, out);
+            }
             liegen_groups_load(d, 7, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

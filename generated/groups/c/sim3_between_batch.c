@@ -250,6 +250,23 @@ static void block_jacobians(
     out_D_y[48] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 8, n, k);
+    liegen_groups_ahead(y, 8, n, k);
+    liegen_groups_ahead_to(out, 8, n, k);
+    liegen_groups_ahead_to(out_D_x, 49, n, k);
+    liegen_groups_ahead_to(out_D_y, 49, n, k);
+}
+
 int liegen_groups_sim3_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -276,6 +293,9 @@ int liegen_groups_sim3_between_batch(
             lanes out_D_x_lanes[49];
             lanes out_D_y_lanes[49];
             lanes room[LANES_ROOM(49)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(y, 8, k, count, y_lanes);
             if (jacobians) {

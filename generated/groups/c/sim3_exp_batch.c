@@ -303,6 +303,19 @@ static void block_jacobians(
     out_D_d[48] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out,
+    liegen_groups_out out_D_d)
+{
+    liegen_groups_ahead(d, 7, n, k);
+    liegen_groups_ahead_to(out, 8, n, k);
+    liegen_groups_ahead_to(out_D_d, 49, n, k);
+}
+
 int liegen_groups_sim3_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -324,6 +337,9 @@ int liegen_groups_sim3_exp_batch(
             lanes out_lanes[8];
             lanes out_D_d_lanes[49];
             lanes room[LANES_ROOM(49)];
+            if (stream) {
+                block_ahead(n, k, d, out, out_D_d);
+            }
             liegen_groups_load(d, 7, k, count, d_lanes);
             if (jacobians) {
                 block_jacobians(d_lanes, out_lanes, out_D_d_lanes);

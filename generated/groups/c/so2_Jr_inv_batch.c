@@ -18,6 +18,17 @@ static void block_value(
     out[0] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in d,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(d, 1, n, k);
+    liegen_groups_ahead_to(out, 1, n, k);
+}
+
 int liegen_groups_so2_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
@@ -35,6 +46,9 @@ int liegen_groups_so2_Jr_inv_batch(
             lanes d_lanes[1];
             lanes out_lanes[1];
             lanes room[LANES_ROOM(1)];
+            if (stream) {
+                block_ahead(n, k, d, out);
+            }
             liegen_groups_load(d, 1, k, count, d_lanes);
             block_value(d_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

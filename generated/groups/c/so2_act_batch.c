@@ -47,6 +47,23 @@ static void block_jacobians(
     out_D_p[3] = x_c;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in p,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_p)
+{
+    liegen_groups_ahead(x, 2, n, k);
+    liegen_groups_ahead(p, 2, n, k);
+    liegen_groups_ahead_to(out, 2, n, k);
+    liegen_groups_ahead_to(out_D_x, 2, n, k);
+    liegen_groups_ahead_to(out_D_p, 4, n, k);
+}
+
 int liegen_groups_so2_act_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -73,6 +90,9 @@ int liegen_groups_so2_act_batch(
             lanes out_D_x_lanes[2];
             lanes out_D_p_lanes[4];
             lanes room[LANES_ROOM(4)];
+            if (stream) {
+                block_ahead(n, k, x, p, out, out_D_x, out_D_p);
+            }
             liegen_groups_load(x, 2, k, count, x_lanes);
             liegen_groups_load(p, 2, k, count, p_lanes);
             if (jacobians) {

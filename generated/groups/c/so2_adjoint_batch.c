@@ -18,6 +18,17 @@ static void block_value(
     out[0] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(x, 2, n, k);
+    liegen_groups_ahead_to(out, 1, n, k);
+}
+
 int liegen_groups_so2_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -35,6 +46,9 @@ int liegen_groups_so2_adjoint_batch(
             lanes x_lanes[2];
             lanes out_lanes[1];
             lanes room[LANES_ROOM(1)];
+            if (stream) {
+                block_ahead(n, k, x, out);
+            }
             liegen_groups_load(x, 2, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

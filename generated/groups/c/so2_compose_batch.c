@@ -41,6 +41,23 @@ static void block_jacobians(
     out_D_y[0] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 2, n, k);
+    liegen_groups_ahead(y, 2, n, k);
+    liegen_groups_ahead_to(out, 2, n, k);
+    liegen_groups_ahead_to(out_D_x, 1, n, k);
+    liegen_groups_ahead_to(out_D_y, 1, n, k);
+}
+
 int liegen_groups_so2_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -67,6 +84,9 @@ int liegen_groups_so2_compose_batch(
             lanes out_D_x_lanes[1];
             lanes out_D_y_lanes[1];
             lanes room[LANES_ROOM(2)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 2, k, count, x_lanes);
             liegen_groups_load(y, 2, k, count, y_lanes);
             if (jacobians) {

@@ -31,6 +31,19 @@ static void block_jacobians(
     out_D_x[0] = lanes_of(1.0);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x)
+{
+    liegen_groups_ahead(x, 2, n, k);
+    liegen_groups_ahead_to(out, 1, n, k);
+    liegen_groups_ahead_to(out_D_x, 1, n, k);
+}
+
 int liegen_groups_so2_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -52,6 +65,9 @@ int liegen_groups_so2_log_batch(
             lanes out_lanes[1];
             lanes out_D_x_lanes[1];
             lanes room[LANES_ROOM(1)];
+            if (stream) {
+                block_ahead(n, k, x, out, out_D_x);
+            }
             liegen_groups_load(x, 2, k, count, x_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);

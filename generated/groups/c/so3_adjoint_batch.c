@@ -41,6 +41,17 @@ static void block_value(
     out[8] = t11 - t10;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out)
+{
+    liegen_groups_ahead(x, 4, n, k);
+    liegen_groups_ahead_to(out, 9, n, k);
+}
+
 int liegen_groups_so3_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -58,6 +69,9 @@ int liegen_groups_so3_adjoint_batch(
             lanes x_lanes[4];
             lanes out_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, x, out);
+            }
             liegen_groups_load(x, 4, k, count, x_lanes);
             block_value(x_lanes, out_lanes);
             lanes_status(NULL, 0, k, count, status);

@@ -115,6 +115,23 @@ static void block_jacobians(
     out_D_y[8] = t36;
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_in y,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x,
+    liegen_groups_out out_D_y)
+{
+    liegen_groups_ahead(x, 4, n, k);
+    liegen_groups_ahead(y, 4, n, k);
+    liegen_groups_ahead_to(out, 3, n, k);
+    liegen_groups_ahead_to(out_D_x, 9, n, k);
+    liegen_groups_ahead_to(out_D_y, 9, n, k);
+}
+
 int liegen_groups_so3_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -141,6 +158,9 @@ int liegen_groups_so3_local_batch(
             lanes out_D_x_lanes[9];
             lanes out_D_y_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, x, y, out, out_D_x, out_D_y);
+            }
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(y, 4, k, count, y_lanes);
             if (jacobians) {

@@ -84,6 +84,19 @@ static void block_jacobians(
     out_D_x[8] = t18 + t12 * (t12 * t17);
 }
 
+/* Asks for what the next block will read and write. */
+static LANES_APART void block_ahead(
+    ptrdiff_t n,
+    ptrdiff_t k,
+    liegen_groups_in x,
+    liegen_groups_out out,
+    liegen_groups_out out_D_x)
+{
+    liegen_groups_ahead(x, 4, n, k);
+    liegen_groups_ahead_to(out, 3, n, k);
+    liegen_groups_ahead_to(out_D_x, 9, n, k);
+}
+
 int liegen_groups_so3_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
@@ -105,6 +118,9 @@ int liegen_groups_so3_log_batch(
             lanes out_lanes[3];
             lanes out_D_x_lanes[9];
             lanes room[LANES_ROOM(9)];
+            if (stream) {
+                block_ahead(n, k, x, out, out_D_x);
+            }
             liegen_groups_load(x, 4, k, count, x_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, out_lanes, out_D_x_lanes);

@@ -51,17 +51,17 @@ def variants(task: Task) -> tuple[Variant, ...]:
 
 
 def batches(task: Task) -> tuple[Variant, ...]:
-    """One call for ``ROWS`` factors, packed one after the other."""
+    """One call for ``ROWS`` factors: inputs in rows of all arguments, each output an array of its own."""
     kernel = task.kernel
     name = f"{PACKAGE}_{kernel.name}_batch"
-    total = [sum(port.size for port in ports) for ports in (task.inputs, task.outputs)]
+    total = sum(port.size for port in task.inputs)
     structs = [
-        f"{PACKAGE}_in x{k} = {{a + {start}, {total[0]}, 1, NULL}};"
+        f"{PACKAGE}_in x{k} = {{a + {start}, {total}, 1, NULL}};"
         for k, start in enumerate(offsets(task.inputs))
     ]
     structs += [
-        f"{PACKAGE}_out y{k} = {{b + {start}, {total[1]}, 1}};"
-        for k, start in enumerate(offsets(task.outputs))
+        f"{PACKAGE}_out y{k} = {{b + {start} * m, {port.size}, 1}};"
+        for k, (port, start) in enumerate(zip(task.outputs, offsets(task.outputs), strict=True))
     ]
     arguments = [f"x{k}" for k in range(len(task.inputs))] + [f"y{k}" for k in range(len(task.outputs))]
     call = (*structs, f"{name}(m, {', '.join(arguments)}, NULL);")

@@ -167,7 +167,10 @@ def batch_rows(found: Sequence[BatchRow], missing: Sequence[Missing]) -> list[tu
 
 def graph_rows(found: GraphReport) -> list[tuple[str, ...]]:
     """Ways to linearise."""
-    return [(r.what, f"{r.minimum_ns:.0f}", f"{r.median_ns:.0f}", f"{r.faster:.1f}") for r in found.rows]
+    return [
+        (r.what, f"{r.cold_ns:.0f}", f"{r.cold_faster:.1f}", f"{r.warm_ns:.0f}", f"{r.warm_faster:.1f}")
+        for r in found.rows
+    ]
 
 
 def solve_rows(found: GraphReport) -> list[tuple[str, ...]]:

@@ -50,7 +50,7 @@ groups_option = click.option(
 def noise_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """``--noise``, ``--loss`` and ``--mode`` of a command; their names are checked where they are used."""
     options = (
-        click.option("--noise", metavar="MODEL", help="Whiten with sqrt_info: full, diagonal or isotropic."),
+        click.option("--noise", metavar="MODEL", help="Whiten: full, packed, diagonal or isotropic."),
         click.option("--loss", metavar="LOSS", help="Robust loss: huber, cauchy, tukey, barron, ..."),
         click.option("--mode", metavar="MODE", help="How the loss is applied: irls (default) or triggs."),
     )

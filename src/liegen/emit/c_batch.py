@@ -41,8 +41,8 @@ SYNTAX = Syntax(
 #: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
 BATCH_NAMES = words("""
     LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
-    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL block_value block_jacobians
-    ptrdiff_t uint8_t
+    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_APART LANES_FETCH
+    LANES_IN_PLACE block_value block_jacobians block_ahead ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
 #: Longest call, without the indentation of the loop.
 _WIDTH = 92
@@ -206,6 +206,9 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     lines += [f"lanes {names.arrays[name]}[{size}];" for name, size in sizes.items()]
     lines += [f"lanes {names.room}[LANES_ROOM({max(sizes.values())})];"]
     lines += [f"lanes_mask {names.held}[{bits}];"] if bits else []
+    passed = ", ".join([names.n, names.k, *(a.name for a in kernel.arguments), *sizes])
+    ahead = wrap(f"block_ahead({passed});", _WIDTH, subsequent_indent="    ")
+    lines += _indented(names.stream, ahead)
     lines += [
         f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments
     ]
@@ -223,6 +226,20 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
         lines += [f"lanes_status(NULL, 0, {place}, status);"]
     lines += [store(name) for name in values]
     return [*lines, *_indented(names.jacobians, [store(name) for name in added])]
+
+
+def _ahead(kernel: Kernel, options: Options, names: _Names) -> Mapping[str, tuple[str, ...]]:
+    """The function that asks for the arrays of the next block: its parameters and its lines."""
+    package, outputs = options.package, kernel.jacobians.outputs
+    n, *rest, _ = batch_parameters(kernel, options, names.n)
+    place = f"{names.n}, {names.k}"
+    return {
+        "parameters": (n, f"ptrdiff_t {names.k}", *rest),
+        "lines": (
+            *(f"{package}_ahead({a.name}, {a.size}, {place});" for a in kernel.arguments),
+            *(f"{package}_ahead_to({port.name}, {port.size}, {place});" for port in outputs),
+        ),
+    }
 
 
 def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
@@ -254,6 +271,7 @@ def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
     )
     return {
         "blocks": tuple(blocks),
+        "ahead": _ahead(kernel, options, names),
         "batch": batch,
         "batch_header": (f"{kernel.name}: batches", "", *closing(options)),
     }

@@ -164,8 +164,8 @@ def _operands(method: Method) -> tuple[_Operand, ...]:
     return tuple(made)
 
 
-def _call(method: Method, package: str, count: str, status: str) -> tuple[tuple[str, ...], str]:
-    """A declaration for the outputs that are left out, if any, and the call."""
+def batch_call(method: Method, package: str, count: str, status: str) -> tuple[tuple[str, ...], str]:
+    """A declaration for the outputs that are left out, if any, and the call; operand k is ``v{k}``."""
     names = [port.name for port in (*method.inputs, *method.outputs)]
     passed = [f"v{names.index(name)}" if name in names else "none" for name in method.taken]
     declared = (f"const {package}_out none = {{NULL, 0, 0}};",) if "none" in passed else ()
@@ -182,7 +182,7 @@ def _loop(method: Method, number: Number, package: str) -> Loop:
     copied = _copied(operands, method, number, package)
     if number.type != "double":
         return copied
-    declared, call = _call(method, package, "n", "NULL")
+    declared, call = batch_call(method, package, "n", "NULL")
     given = [
         _structure(
             o, package, f"({'' if o.written else 'const '}double *)args[{o.position}]",
@@ -205,7 +205,7 @@ def _loop(method: Method, number: Number, package: str) -> Loop:
 def _copied(operands: Sequence[_Operand], method: Method, number: Number, package: str) -> Loop:
     """The loop through packed copies alone."""
     block = max(1, min(MOST, ROOM // sum(o.size for o in operands)))
-    declared, call = _call(method, package, "count", "NULL")
+    declared, call = batch_call(method, package, "count", "NULL")
     local = [
         line
         for o in operands
@@ -237,7 +237,7 @@ def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -
     """The bits of the requirements that each element violates; the values are computed and dropped."""
     value = replace(method, outputs=kernel.value.outputs)
     copied = _copied(_operands(value), value, number, package)
-    _, call = _call(value, package, "count", "bits")
+    _, call = batch_call(value, package, "count", "bits")
     position = len(method.inputs)
     return replace(
         copied,

@@ -35,6 +35,11 @@ def _upper(stored: Vector, m: int) -> Matrix:
     return tuple(tuple(stored[i * m + j] if j >= i else 0 for j in range(m)) for i in range(m))
 
 
+def _packed(stored: Vector, m: int) -> Matrix:
+    rows = [m * i - i * (i + 1) // 2 for i in range(m)]  # entry (i, j) is number rows[i] + j
+    return tuple(tuple(stored[rows[i] + j] if j >= i else 0 for j in range(m)) for i in range(m))
+
+
 def _draw_full(generator: np.random.Generator, m: int) -> NDArray[np.float64]:
     """Numbers below the diagonal too: code that reads them is wrong."""
     S = generator.normal(size=(m, m))
@@ -52,6 +57,14 @@ NOISES: Mapping[str, Noise] = {
             lambda m: f"{m} x {m} upper triangular",
             "square root S of the information, S^T S = covariance^-1; below the diagonal it is not read",
             _draw_full,
+        ),
+        Noise(
+            "packed",
+            lambda m: (m * (m + 1) // 2,),
+            _packed,
+            lambda m: f"R{m * (m + 1) // 2} packed upper triangle",
+            "square root S of the information, S^T S = covariance^-1: its upper triangle, row by row",
+            lambda generator, m: _draw_full(generator, m)[np.triu_indices(m)],
         ),
         Noise(
             "diagonal",

@@ -20,6 +20,7 @@ from liegen.native import find_compiler
 
 from .build import load
 from .calls import Call, Evaluate, call, signature
+from .gathers import gathering_evaluator
 from .indexed import Indices, batch_evaluator, checked_indices, gathering
 from .numpy_code import numpy_evaluators
 from .source import PACKAGE, Source, emitted
@@ -117,7 +118,8 @@ class Compiled(Methods):
         for method in self.source.methods:
             evaluate = gathering(method, self.calls[method.name].evaluate, indices)
             if self.library is not None and method.name != "status":
-                evaluate = batch_evaluator(self.library, method, indices)
+                any_layout = batch_evaluator(self.library, method, indices)
+                evaluate = gathering_evaluator(self.library, self.source.name, method, indices, any_layout)
             calls[method.name] = call(self.source, method.name, evaluate)
         return Indexed(*_first(calls), calls=calls, compiled=self, indices=indices)
 

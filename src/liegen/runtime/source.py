@@ -10,6 +10,7 @@ from functools import cached_property
 
 from liegen.emit import render
 from liegen.emit.floats import conditions_source, floats_source
+from liegen.emit.gathers import gathers_source
 from liegen.emit.header import doc_lines, interface_doc
 from liegen.emit.loops import Method, loops_source, methods
 from liegen.emit.numpy_target import camel
@@ -96,6 +97,7 @@ def emitted(kernel: Kernel, *, summed: bool = False) -> Source:
         c={
             **c,
             f"{kernel.name}_loops.c": loops_source(kernel, options),
+            f"{kernel.name}_gathers.c": gathers_source(kernel, options),
             **({f"{kernel.name}_sums.c": sums_source(kernel, options)} if summed else {}),
         },
         numpy={

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import importlib
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -41,6 +43,30 @@ def _constructor() -> Any:
     pointer, number = ctypes.c_void_p, ctypes.c_int
     arguments = [pointer] * 3 + [number] * 4 + [pointer] * 2 + [number, pointer]
     return ctypes.PYFUNCTYPE(ctypes.py_object, *arguments)(table[_FROM_SIGNATURE])
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """A gufunc, and what must live as long as it: NumPy keeps pointers."""
+
+    call: np.ufunc
+    kept: tuple[Any, ...]
+
+
+def made_gufunc(loop: Any, told: Any, types: Sequence[int], name: str, inputs: int, signature: str) -> Made:
+    """A gufunc of one loop.
+
+    ``loop`` is a function of ctypes, which gets the address of ``told``; ``types`` are NumPy's numbers of the
+    operands' types, ``inputs`` of which are read.
+    """
+    loops, data = (ctypes.c_void_p * 1)(), (ctypes.c_void_p * 1)()
+    loops[0], data[0] = ctypes.cast(loop, ctypes.c_void_p), ctypes.addressof(told)
+    codes = (ctypes.c_char * len(types))(*types)
+    texts = [ctypes.create_string_buffer(text.encode()) for text in (name, signature)]
+    title, shapes = map(ctypes.addressof, texts)
+    pointers = [ctypes.addressof(part) for part in (loops, data, codes)]
+    made = _constructor()(*pointers, 1, inputs, len(types) - inputs, _NO_IDENTITY, title, None, 0, shapes)
+    return Made(made, (loop, told, loops, data, codes, texts))
 
 
 def gufunc(library: ctypes.CDLL, symbol: str) -> np.ufunc:

@@ -19,6 +19,7 @@ from .change import from_chart as from_chart
 from .change import to_chart as to_chart
 from .covariance import block_diagonal as block_diagonal
 from .covariance import joint as joint
+from .covariance import packed as packed
 from .covariance import propagate as propagate
 from .covariance import sqrt_info as sqrt_info
 from .covariance import squared_error as squared_error

@@ -151,6 +151,14 @@ def sqrt_info(S: ArrayLike) -> Array:
     return np.triu(np.linalg.inv(upper)).astype(np.float64, copy=False)
 
 
+def packed(R: ArrayLike) -> Array:
+    """The upper triangle of R (..., n, n) row by row, (..., n (n + 1) / 2): what ``noise="packed"`` takes."""
+    rows = numbers(R, "R")
+    if rows.ndim < 2 or rows.shape[-1] != rows.shape[-2]:
+        raise UncertaintyError(f"{here()}: R must have shape (..., n, n), got {rows.shape}")
+    return np.ascontiguousarray(rows[(..., *np.triu_indices(rows.shape[-1]))])
+
+
 def whiten(h: ArrayLike, S: ArrayLike) -> Array:
     """R h with R = ``sqrt_info(S)``; h has shape (..., n), in the frame and order of S."""
     h = numbers(h, "h")

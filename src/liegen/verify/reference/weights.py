@@ -44,6 +44,9 @@ RHO: Mapping[str, _Rho] = {
 
 def _white(noise: str, r: Vector, stored: Vector) -> Vector:
     """S r; below the diagonal the numbers do not count."""
+    if noise == "packed":
+        rest = list(stored)
+        return tuple(sum((rest.pop(0) * x for x in r[i:]), mp.zero) for i in range(len(r)))
     if noise == "full":
         m = len(r)
         upper = tuple(tuple(stored[i * m + j] if j >= i else mp.zero for j in range(m)) for i in range(m))
