@@ -5,66 +5,21 @@ from __future__ import annotations
 import ctypes
 import errno
 import os
-import pickle
 import stat
-import subprocess
 import sys
-import tempfile
 import warnings
-import zlib
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
-from runtime_factors import arguments, between, pixel, rotated
+from runtime_factors import rotated
+from runtime_tools import child, entries, works
 
 import liegen
 from compiler_tools import needs_compiler
-from liegen import native
-from liegen.errors import CacheWarning, CompilerWarning, ToolError
-from liegen.runtime import build, cache, compiled
+from liegen.errors import CacheWarning
+from liegen.runtime import build, cache
 
-pytestmark = needs_compiler
-R, p = arguments(rotated, (4,))[0]
-SOURCES = Path(liegen.__file__).parents[1]
-
-
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch):
-    monkeypatch.setattr(build, "FLAGS", ("-std=c99", "-O0"))
-
-
-def works(k):
-    quaternion, point = R[0], p[0]
-    u, w = quaternion[:3], quaternion[3]
-    turned = point + 2 * np.cross(u, np.cross(u, point) + w * point)
-    np.testing.assert_allclose(k(R, p)[0], turned, rtol=1e-12)
-    return k
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """An empty cache of its own."""
-    monkeypatch.setenv("LIEGEN_CACHE_DIR", str(tmp_path / "own"))
-    return tmp_path / "own" / cache.FOLDER
-
-
-@pytest.fixture
-def compilations(monkeypatch):
-    """The shared objects that were compiled."""
-    made = []
-
-    def counted(sources, library, flags):
-        made.append(library)
-        native.compile_shared(sources, library, flags)
-
-    monkeypatch.setattr(build, "compile_shared", counted)
-    return made
-
-
-def entries(folder):
-    return sorted(p.name for p in folder.iterdir())
+pytestmark = [needs_compiler, pytest.mark.usefixtures("quick_builds")]
 
 
 def test_compiled_once(folder, compilations):
@@ -206,18 +161,6 @@ def test_the_folder_follows_the_environment(monkeypatch, tmp_path):
     assert cache.cache_folder() == tmp_path / ".cache" / "liegen" / cache.FOLDER
 
 
-def child(code, *arguments, **environment):
-    env = {
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join([str(SOURCES), str(Path(__file__).parent)]),
-        **environment,
-    }
-    return subprocess.Popen(
-        [sys.executable, "-c", code, *arguments], env=env,
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
-
-
 ONE_CALL = """
 import liegen, runtime_factors as f
 print(liegen.compile(f.rotated, backend="c")(*f.arguments(f.rotated)[0]))
@@ -232,124 +175,3 @@ def test_several_processes_at_once(folder):
     names = entries(folder)
     assert len({name.split("-")[0] for name in names}) == 1
     assert not [name for name in names if name.startswith(".")]
-
-
-# --- compilers --------------------------------------------------------------------------------------------
-
-
-def script(path, text):
-    path.write_text(f"#!/bin/sh\n{text}\n")
-    path.chmod(0o755)
-    return str(path)
-
-
-@pytest.mark.skipif(os.name != "posix", reason="a shell script")
-def test_a_compiler_that_fails(folder, tmp_path, monkeypatch):
-    monkeypatch.setenv("CC", script(tmp_path / "mycc", "echo 'licence expired' >&2; exit 3"))
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    with pytest.raises(ToolError, match=r"(?s)rotated: .*mycc does not .*licence expired.*kept in ") as info:
-        liegen.compile(rotated)
-    kept = Path(str(info.value).rsplit("kept in ", 1)[1])
-    assert "rotated_batch(" in (kept / "rotated_loops.c").read_text()
-    assert not folder.exists() or entries(folder) == []
-
-
-@pytest.mark.skipif(os.name != "posix", reason="a shell script")
-def test_a_compiler_that_does_not_know_the_processor(folder, tmp_path, monkeypatch):
-    real = " ".join(native.find_compiler())
-    refuses = f'case "$*" in *march=native*) echo unknown >&2; exit 1;; esac; exec {real} "$@"'
-    monkeypatch.setenv("CC", script(tmp_path / "oldcc", refuses))
-    works(liegen.compile(rotated))
-
-
-@pytest.mark.slow
-def test_the_compiler_of_the_package_ziglang(folder, monkeypatch):
-    pytest.importorskip("ziglang")
-    monkeypatch.setenv("CC", f"{sys.executable} -m ziglang cc")
-    assert works(liegen.compile(rotated)).backend == "c"
-
-
-@pytest.fixture
-def no_compiler(monkeypatch, tmp_path):
-    monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(native.importlib.util, "find_spec", lambda name: None)
-
-
-def test_without_a_compiler(no_compiler):
-    with pytest.warns(CompilerWarning, match="no C compiler was found") as caught:
-        k = works(liegen.compile(rotated))
-    assert caught[0].filename == __file__
-    assert k.backend == "numpy"
-    with pytest.raises(ToolError, match="no C compiler was found"):
-        liegen.compile(rotated, backend="c")
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert works(liegen.compile(rotated, backend="numpy")).backend == "numpy"
-
-
-def test_zig_is_found_last(no_compiler, monkeypatch, tmp_path):
-    monkeypatch.setattr(native.importlib.util, "find_spec", lambda name: name == "ziglang" or None)
-    assert native.find_compiler() == (sys.executable, "-m", "ziglang", "cc")
-    script(tmp_path / "zig", "")
-    assert native.find_compiler() == ("zig", "cc")
-    script(tmp_path / "clang", "")
-    assert native.find_compiler() == ("clang",)
-
-
-# --- pickles ----------------------------------------------------------------------------------------------
-
-
-def test_pickles_in_one_process(compilations):
-    k = liegen.compile(between)
-    before = len(compilations)
-    again = pickle.loads(pickle.dumps(k))
-    assert again == k
-    assert hash(again) == hash(k)
-    assert len(compilations) == before
-    variables, given = arguments(between, (3,))
-    for name in ("jacobians", "status"):
-        method = pickle.loads(pickle.dumps(getattr(k, name)))
-        for a, b in zip(method(*variables, **given), getattr(k, name)(*variables, **given), strict=True):
-            np.testing.assert_array_equal(a, b)
-    made = k.jacobians(*variables, **given)
-    copy = pickle.loads(pickle.dumps(made))
-    assert type(copy) is type(made)
-    np.testing.assert_array_equal(copy.res_D_y, made.res_D_y)
-    assert k != liegen.compile(between, backend="numpy")
-    assert len(pickle.dumps(k)) < 60_000
-
-
-UNPICKLE = """
-import pickle, sys
-k, arrays = pickle.load(sys.stdin.buffer)
-import numpy as np
-print(k.backend, k(*arrays).tolist(), "casadi" in sys.modules)
-"""
-
-
-@pytest.mark.parametrize("place", ["same cache", "empty cache", "no compiler"])
-def test_pickles_in_another_process(kept, tmp_path, place):
-    k = liegen.compile(rotated)
-    environment = {"LIEGEN_CACHE_DIR": str(kept if place == "same cache" else tmp_path)}
-    if place == "no compiler":
-        environment |= {"PATH": str(tmp_path), "CC": ""}
-    process = child(UNPICKLE, **environment)
-    out, err = process.communicate(pickle.dumps((k, (R[0], p[0]))), timeout=120)
-    assert process.returncode == 0, err
-    backend, rest = out.decode().split(" ", 1)
-    zig = native.importlib.util.find_spec("ziglang")
-    assert backend == ("numpy" if place == "no compiler" and not zig else "c")
-    np.testing.assert_allclose(eval(rest.rsplit(" ", 1)[0]), k(R[0], p[0]), rtol=1e-12)
-
-
-def test_a_pickle_of_another_version():
-    k = liegen.compile(pixel)
-    function, (name, digest, packed, asked) = k.__reduce__()
-    other = replace(k.source, floats=f"{k.source.floats}\n")
-    with pytest.raises(ToolError, match="pixel was pickled by another version"):
-        function(name, digest, zlib.compress(pickle.dumps(other)), asked)
-    with pytest.raises(ToolError, match=r"pixel was pickled by another version of liegen; call liegen\.comp"):
-        function(name, digest[::-1], packed, asked)
-    with pytest.raises(ToolError, match="pixel was pickled by another version"):
-        compiled.restored(name, digest, packed[:-5], asked)
