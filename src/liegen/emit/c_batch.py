@@ -15,6 +15,7 @@ from liegen.program import Program
 from liegen.program.rewrite import Builder, rebuilt
 
 from .header import closing
+from .precision import DOUBLE, SINGLE, Precision, precisions
 from .printer import Assignment, Listing, Store, condition_indices, print_program
 from .syntax import CHOICE, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
 from .target import Options, scalar_names, words
@@ -42,6 +43,7 @@ SYNTAX = Syntax(
 BATCH_NAMES = words("""
     LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
     lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL block_value block_jacobians
+    block_value_cm block_jacobians_cm
     ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
 #: Longest call, without the indentation of the loop.
@@ -71,6 +73,7 @@ class Batch:
     """The function of a batch: its variables, the head of its loop over blocks, what is done with a block."""
 
     name: str
+    summary: str
     parameters: tuple[str, ...]
     locals: tuple[str, ...]
     loop: str
@@ -80,9 +83,31 @@ class Batch:
     violated: str
 
 
-def batch_name(kernel: Kernel) -> str:
-    """``between_se3_batch``."""
-    return f"{kernel.name}_batch"
+@dataclass(frozen=True)
+class BatchFile:
+    """A source of batches: for each program a function on a block, and the functions that call them.
+
+    Numbers are spelt as doubles.
+    """
+
+    header: tuple[str, ...]
+    lanes: str
+    blocks: tuple[Block, ...]
+    functions: tuple[Batch, ...]
+
+
+def batch_name(kernel: Kernel, *, column_major: bool = False, precision: Precision = DOUBLE) -> str:
+    """``between_se3_batch``, ``between_se3_batch_cm_f32``."""
+    return f"{kernel.name}_batch{'_cm' if column_major else ''}{precision.suffix}"
+
+
+def batch_names(kernel: Kernel) -> tuple[str, ...]:
+    """Those of all layouts and precisions."""
+    return tuple(
+        batch_name(kernel, column_major=columns, precision=precision)
+        for precision in (DOUBLE, SINGLE)
+        for columns in (False, True)
+    )
 
 
 def without_chosen_conditions(program: Program) -> Program:
@@ -111,34 +136,53 @@ def _assign(assignment: Assignment) -> str:
     return _FORMATS[assignment.kind].format(assignment.name, assignment.text)
 
 
-def _stores(stores: Sequence[Store]) -> list[str]:
+def _stores(stores: Sequence[Store], turned: Collection[str]) -> list[str]:
+    """``turned``: outputs whose numbers stand by columns."""
+    if stores[0].port in turned:
+        stores = sorted(stores, key=lambda store: store.index[::-1])
     return [f"{store.port}[{k}] = {store.text};" for k, store in enumerate(stores)]
 
 
-def _block(kernel: Kernel, program: Program, name: str, held: str) -> Block:
+def _turned(kernel: Kernel) -> frozenset[str]:
+    """The outputs whose numbers have another order by columns."""
+    fixed = {o.name for o in kernel.outputs if o.laid_out}
+    matrices = (p for p in kernel.jacobians.outputs if len(p.shape) == 2 and min(p.shape) > 1)
+    return frozenset(p.name for p in matrices if p.name not in fixed)
+
+
+def _blocks(kernel: Kernel, held: str, *, column_major: bool) -> tuple[Block, ...]:
+    """The functions of a block: of the value, and with the Jacobians where there are any."""
+    programs = [(kernel.value, "block_value"), (kernel.jacobians, "block_jacobians")]
+    turned = _turned(kernel) if column_major else frozenset[str]()
+    return tuple(
+        _block(kernel, program, name, held, turned & {port.name for port in program.outputs})
+        for program, name in programs[: 2 if kernel.variables else 1]
+    )
+
+
+def _block(kernel: Kernel, program: Program, name: str, held: str, turned: Collection[str]) -> Block:
     listing: Listing = print_program(without_chosen_conditions(program), SYNTAX, scalar_names(kernel))
     read = {load.port for load in listing.loads}
     given = [f"const lanes *{a.name}" for a in kernel.arguments]
     made = [f"lanes *{port.name}" for port in program.outputs]
     conditions = [f"{held}[{k}] = {text};" for k, text in enumerate(listing.conditions)]
-    jacobians = len(program.outputs) > len(kernel.outputs)
+    what = "Value and Jacobians" if len(program.outputs) > len(kernel.outputs) else "Value"
     return Block(
-        name=name,
-        summary="Value and Jacobians of a block." if jacobians else "Value of a block.",
+        name=f"{name}_cm" if turned else name,
+        summary=f"{what} of a block{', column-major' if turned else ''}.",
         parameters=(*given, *made, *([f"lanes_mask *{held}"] if conditions else [])),
         unused=tuple(a.name for a in kernel.arguments if a.name not in read),
         loads=tuple(f"const lanes {load.name} = {load.port}[{load.index}];" for load in listing.loads),
         body=tuple(map(_assign, (*listing.guard, *listing.body))),
-        stores=(*conditions, *(line for stores in listing.stores for line in _stores(stores))),
+        stores=(*conditions, *(line for stores in listing.stores for line in _stores(stores, turned))),
     )
 
 
-def batch_parameters(kernel: Kernel, options: Options, n: str) -> tuple[str, ...]:
-    """The parameters of the batch function."""
+def _parameters(kernel: Kernel, package: str, precision: Precision, n: str) -> tuple[str, ...]:
     return (
         f"ptrdiff_t {n}",
-        *(f"{options.package}_in {a.name}" for a in kernel.arguments),
-        *(f"{options.package}_out {port.name}" for port in kernel.jacobians.outputs),
+        *(f"{package}_in{precision.suffix} {a.name}" for a in kernel.arguments),
+        *(f"{package}_out{precision.suffix} {port.name}" for port in kernel.jacobians.outputs),
         "uint8_t *status",
     )
 
@@ -225,35 +269,50 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     return [*lines, *_indented(names.jacobians, [store(name) for name in added])]
 
 
-def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
-    """The names that the batch's template lays out."""
+def _function(
+    kernel: Kernel, package: str, blocks: Sequence[Block], *, column_major: bool, precision: Precision
+) -> Batch:
     names = _names(kernel)
-    programs = [(kernel.value, "block_value"), (kernel.jacobians, "block_jacobians")]
-    blocks = [_block(kernel, p, name, names.held) for p, name in programs[: 2 if kernel.variables else 1]]
-    size = {name: sum(p.size for p in program.outputs) for program, name in programs}
-    values = {o.name for o in kernel.outputs}
-    wanted = " || ".join(f"{p.name}.data != NULL" for p in kernel.jacobians.outputs if p.name not in values)
-    total = (
-        f"{names.jacobians} ? {size['block_jacobians']} : {size['block_value']}"
-        if wanted
-        else str(size["block_value"])
-    )
-    batch = Batch(
-        name=f"{options.package}_{batch_name(kernel)}",
-        parameters=batch_parameters(kernel, options, names.n),
+    values = [o.name for o in kernel.outputs]
+    size = {p.name: p.size for p in kernel.jacobians.outputs}
+    wanted = " || ".join(f"{name}.data != NULL" for name in size if name not in values)
+    value, total = sum(size[name] for name in values), sum(size.values())
+    moved = f"{names.jacobians} ? {total} : {value}" if wanted else str(value)
+    return Batch(
+        name=f"{package}_{batch_name(kernel, column_major=column_major, precision=precision)}",
+        summary=f"n factors ({'column-major' if column_major else 'row-major'})",
+        parameters=_parameters(kernel, package, precision, names.n),
         locals=(
             *([f"const int {names.jacobians} = {wanted};"] if wanted else []),
-            f"const int {names.stream} = lanes_streams({names.n}, {total});",
+            f"const int {names.stream} = lanes_streams({names.n}, {moved});",
             f"int {names.violated} = 0;",
         ),
         loop=f"ptrdiff_t {names.k} = 0; {names.k} < {names.n}; {names.k} += LANES",
-        body=tuple(_body(kernel, options.package, names, blocks)),
+        body=tuple(_body(kernel, package, names, blocks)),
         pens=tuple(names.pens.values()),
         stream=names.stream,
         violated=names.violated,
     )
+
+
+def printed_batches(kernel: Kernel, options: Options) -> Mapping[str, object]:
+    """The names that the templates of batches lay out: their declarations, a file for each precision."""
+    held = _names(kernel).held
+    orders = (False, True) if options.layout == "col" else (False,)
+    blocks = {by: _blocks(kernel, held, column_major=by) for by in orders}
+    files = {
+        precision: BatchFile(
+            header=(f"{kernel.name}: batches", "", *closing(options)),
+            lanes=f"{options.package}_lanes{precision.suffix}.h",
+            blocks=tuple({block.name: block for by in orders for block in blocks[by]}.values()),
+            functions=tuple(
+                _function(kernel, options.package, blocks[by], column_major=by, precision=precision)
+                for by in orders
+            ),
+        )
+        for precision in precisions(options.scalar)
+    }
     return {
-        "blocks": tuple(blocks),
-        "batch": batch,
-        "batch_header": (f"{kernel.name}: batches", "", *closing(options)),
+        "batches": tuple(function for file in files.values() for function in file.functions),
+        **{f"batch{precision.suffix}": file for precision, file in files.items()},
     }
