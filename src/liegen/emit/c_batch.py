@@ -1,76 +1,35 @@
-"""Batches in C: one straight-line body on ``lanes``, as many factors as the machine takes at once.
-
-The body is printed once for each program. The type ``lanes`` is a GCC vector or, for other compilers, a
-double; the header of the package (``templates/c/lanes.h.j2``) says which.
-"""
+"""Batches in C: functions that load, compute and store one block of factors after the other."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
 from liegen.kernel import Kernel
-from liegen.program import Program
-from liegen.program.rewrite import Builder, rebuilt
 
+from .c_block import SYNTAX, Block, Names, names_of, printed_blocks, turned_outputs
 from .header import closing
 from .precision import DOUBLE, SINGLE, Precision, precisions
-from .printer import Assignment, Listing, Store, condition_indices, print_program
-from .syntax import CHOICE, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
-from .target import Options, scalar_names, words
-
-#: One strength for comparisons, & and |: compilers warn of one bare within another.
-_CONDITION = CHOICE + 1
-SYNTAX = Syntax(
-    operators={
-        "add": Operator("+", SUM, "sum"), "sub": Operator("-", SUM, "sum"),
-        "mul": Operator("*", PRODUCT, "product"), "div": Operator("/", PRODUCT, "product"),
-        "neg": Operator("-", PREFIX), "lt": Operator("<", _CONDITION), "le": Operator("<=", _CONDITION),
-        "and": Operator("&", _CONDITION, "and"), "or": Operator("|", _CONDITION, "or"),
-    },
-    calls={
-        name: f"lanes_{name}"
-        for name in words("sqrt sin cos tan asin acos atan exp log abs atan2 not select")
-    },
-    constant=spell("NAN", "INFINITY"),
-    truth={True: "LANES_TRUE", False: "LANES_FALSE"},
-    lift="lanes_of({0})",
-    sincos="lanes_sincos({0}, &{1}, &{2})",
-)  # fmt: skip
+from .target import Options, words
 
 #: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
 BATCH_NAMES = words("""
     LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
-    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL block_value block_jacobians
+    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_WHOLE block_value block_jacobians
     block_value_cm block_jacobians_cm
     ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
 #: Longest call, without the indentation of the loop.
 _WIDTH = 92
-_FORMATS = {
-    "scalar": "const lanes {0} = {1};",
-    "condition": "const lanes_mask {0} = {1};",
-    "pair": "lanes {0}; {1};",
-}
-
-
-@dataclass(frozen=True)
-class Block:
-    """The function of one program on a block of factors."""
-
-    name: str
-    summary: str
-    parameters: tuple[str, ...]
-    unused: tuple[str, ...]
-    loads: tuple[str, ...]
-    body: tuple[str, ...]
-    stores: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Batch:
-    """The function of a batch: its variables, the head of its loop over blocks, what is done with a block."""
+    """The function of a batch: its variables, the head of its loop over blocks, what is done with a block.
+
+    ``same``: the call of another batch that does the same, and nothing else is needed.
+    """
 
     name: str
     summary: str
@@ -81,6 +40,7 @@ class Batch:
     pens: tuple[str, ...]
     stream: str
     violated: str
+    same: str = ""
 
 
 @dataclass(frozen=True)
@@ -110,74 +70,6 @@ def batch_names(kernel: Kernel) -> tuple[str, ...]:
     )
 
 
-def without_chosen_conditions(program: Program) -> Program:
-    """Selects between conditions become and, or, not: a select of lanes has numbers as arms."""
-    conditions = condition_indices(program)
-    builder = Builder()
-    place: list[int] = []
-    for ins in program.code:
-        args = tuple(place[a] for a in ins.args)
-        if ins.op == "select" and ins.args[1] in conditions:
-            c, yes, no = args
-            other = builder.emit("and", (builder.emit("not", (c,)), no))
-            place.append(builder.emit("or", (builder.emit("and", (c, yes)), other)))
-        else:
-            place.append(builder.emit(ins.op, args, ins.value))
-    return rebuilt(program, builder.code, place) if conditions else program
-
-
-def _fresh(name: str, used: Collection[str]) -> str:
-    while name in used:
-        name += "_"
-    return name
-
-
-def _assign(assignment: Assignment) -> str:
-    return _FORMATS[assignment.kind].format(assignment.name, assignment.text)
-
-
-def _stores(stores: Sequence[Store], turned: Collection[str]) -> list[str]:
-    """``turned``: outputs whose numbers stand by columns."""
-    if stores[0].port in turned:
-        stores = sorted(stores, key=lambda store: store.index[::-1])
-    return [f"{store.port}[{k}] = {store.text};" for k, store in enumerate(stores)]
-
-
-def _turned(kernel: Kernel) -> frozenset[str]:
-    """The outputs whose numbers have another order by columns."""
-    fixed = {o.name for o in kernel.outputs if o.laid_out}
-    matrices = (p for p in kernel.jacobians.outputs if len(p.shape) == 2 and min(p.shape) > 1)
-    return frozenset(p.name for p in matrices if p.name not in fixed)
-
-
-def _blocks(kernel: Kernel, held: str, *, column_major: bool) -> tuple[Block, ...]:
-    """The functions of a block: of the value, and with the Jacobians where there are any."""
-    programs = [(kernel.value, "block_value"), (kernel.jacobians, "block_jacobians")]
-    turned = _turned(kernel) if column_major else frozenset[str]()
-    return tuple(
-        _block(kernel, program, name, held, turned & {port.name for port in program.outputs})
-        for program, name in programs[: 2 if kernel.variables else 1]
-    )
-
-
-def _block(kernel: Kernel, program: Program, name: str, held: str, turned: Collection[str]) -> Block:
-    listing: Listing = print_program(without_chosen_conditions(program), SYNTAX, scalar_names(kernel))
-    read = {load.port for load in listing.loads}
-    given = [f"const lanes *{a.name}" for a in kernel.arguments]
-    made = [f"lanes *{port.name}" for port in program.outputs]
-    conditions = [f"{held}[{k}] = {text};" for k, text in enumerate(listing.conditions)]
-    what = "Value and Jacobians" if len(program.outputs) > len(kernel.outputs) else "Value"
-    return Block(
-        name=f"{name}_cm" if turned else name,
-        summary=f"{what} of a block{', column-major' if turned else ''}.",
-        parameters=(*given, *made, *([f"lanes_mask *{held}"] if conditions else [])),
-        unused=tuple(a.name for a in kernel.arguments if a.name not in read),
-        loads=tuple(f"const lanes {load.name} = {load.port}[{load.index}];" for load in listing.loads),
-        body=tuple(map(_assign, (*listing.guard, *listing.body))),
-        stores=(*conditions, *(line for stores in listing.stores for line in _stores(stores, turned))),
-    )
-
-
 def _parameters(kernel: Kernel, package: str, precision: Precision, n: str) -> tuple[str, ...]:
     return (
         f"ptrdiff_t {n}",
@@ -187,61 +79,32 @@ def _parameters(kernel: Kernel, package: str, precision: Precision, n: str) -> t
     )
 
 
-@dataclass(frozen=True)
-class _Names:
-    """The variables of a batch function, named as nothing of the kernel is."""
-
-    n: str
-    k: str
-    count: str
-    held: str
-    broken: str
-    violated: str
-    jacobians: str
-    stream: str
-    room: str
-    arrays: Mapping[str, str]
-    pens: Mapping[str, str]
-
-
-def _names(kernel: Kernel) -> _Names:
-    ports = [*(a.name for a in kernel.arguments), *(p.name for p in kernel.jacobians.outputs)]
-    used = {*ports, *scalar_names(kernel)}
-    arrays = {name: _fresh(f"{name}_lanes", used) for name in ports}
-
-    def own(name: str) -> str:
-        return _fresh(name, used)
-
-    return _Names(
-        n=own("n"), k=own("k"), count=own("count"), held=own("held"), broken=own("broken"),
-        violated=own("violated"), jacobians=own("jacobians"), stream=own("stream"), room=own("room"),
-        arrays=arrays, pens={p.name: own(f"{p.name}_pen") for p in kernel.jacobians.outputs},
-    )  # fmt: skip
-
-
 def _indented(condition: str, lines: Sequence[str]) -> list[str]:
     return [f"if ({condition}) {{", *(f"    {line}" for line in lines), "}"] if lines else []
 
 
-def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) -> list[str]:
-    """What is done with a block: load, compute, blank what is outside of the domain, store."""
-    values = [o.name for o in kernel.outputs]
-    sizes = {p.name: p.size for p in kernel.jacobians.outputs}
-    added = [name for name in sizes if name not in values]
-    bits, place = len(kernel.value.requirements), f"{names.k}, {names.count}"
-    extra = [names.held] if bits else []
+def _body(kernel: Kernel, package: str, names: Names, blocks: Sequence[Block]) -> list[str]:
+    """What is done with a block: load, compute, blank what is outside of the domain, store.
 
-    def call(block: Block, outputs: Sequence[str]) -> list[str]:
-        arguments = [names.arrays[name] for name in (*(a.name for a in kernel.arguments), *outputs)]
-        return wrap(f"{block.name}({', '.join([*arguments, *extra])});", _WIDTH, subsequent_indent="    ")
+    ``blocks``: of the value, and with the Jacobians; or the only one that is called.
+    """
+    sizes = {p.name: p.size for p in kernel.jacobians.outputs}
+    bits, place = len(kernel.value.requirements), f"{names.k}, {names.count}"
+
+    def call(block: Block) -> list[str]:
+        arrays = [names.arrays[name] for name in (*(a.name for a in kernel.arguments), *block.outputs)]
+        passed = [*arrays, *block.flags, *([names.held] if bits else [])]
+        return wrap(f"{block.name}({', '.join(passed)});", _WIDTH, subsequent_indent="    ")
 
     def blank(name: str) -> str:
-        return f"lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
+        wanted = f"if ({names.wanted[name]}) " if name in names.wanted else ""
+        return f"{wanted}lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
 
     def store(name: str) -> str:
         pen = f"{names.stream} ? &{names.pens[name]} : NULL"
+        wanted = f"if ({names.wanted[name]}) " if name in names.wanted else ""
         passed = f"{names.arrays[name]}, {names.room}, {pen}"
-        return f"{package}_store({name}, {sizes[name]}, {place}, {passed});"
+        return f"{wanted}{package}_store({name}, {sizes[name]}, {place}, {passed});"
 
     lines = [
         f"const int {names.count} = {names.n} - {names.k} < LANES ? (int)({names.n} - {names.k}) : LANES;"
@@ -253,53 +116,61 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     lines += [
         f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments
     ]
-    if added:
-        lines += _indented(names.jacobians, call(blocks[1], [*sizes]))
-        lines += _indented(f"!{names.jacobians}", call(blocks[0], values))
+    if len(blocks) > 1:
+        lines += _indented(names.jacobians, call(blocks[1]))
+        lines += _indented(f"!{names.jacobians}", call(blocks[0]))
     else:
-        lines += call(blocks[0], values)
+        lines += call(blocks[0])
     if bits:
         lines += [f"const int {names.broken} = lanes_status({names.held}, {bits}, {place}, status);"]
         lines += [f"{names.violated} |= {names.broken};"]
-        lines += _indented(names.broken, [blank(name) for name in values])
-        lines += _indented(f"{names.broken} && {names.jacobians}", [blank(name) for name in added])
+        lines += _indented(names.broken, [blank(name) for name in sizes])
     else:
         lines += [f"lanes_status(NULL, 0, {place}, status);"]
-    lines += [store(name) for name in values]
-    return [*lines, *_indented(names.jacobians, [store(name) for name in added])]
+    return [*lines, *(store(name) for name in sizes)]
 
 
 def _function(
     kernel: Kernel, package: str, blocks: Sequence[Block], *, column_major: bool, precision: Precision
 ) -> Batch:
-    names = _names(kernel)
-    values = [o.name for o in kernel.outputs]
+    names = names_of(kernel)
     size = {p.name: p.size for p in kernel.jacobians.outputs}
-    wanted = " || ".join(f"{name}.data != NULL" for name in size if name not in values)
-    value, total = sum(size[name] for name in values), sum(size.values())
-    moved = f"{names.jacobians} ? {total} : {value}" if wanted else str(value)
+    total, value = sum(size.values()), sum(size[o.name] for o in kernel.outputs)
+    passed = [names.n, *(a.name for a in kernel.arguments), *size, "status"]
+    rows = f"{package}_{batch_name(kernel, precision=precision)}({', '.join(passed)})"
+    turned = turned_outputs(kernel) if column_major else frozenset[str]()
+    # a column-major batch without a matrix among its values leaves them to the row-major one
+    split = column_major and bool(names.wanted) and turned.isdisjoint(o.name for o in kernel.outputs)
     return Batch(
         name=f"{package}_{batch_name(kernel, column_major=column_major, precision=precision)}",
         summary=f"n factors ({'column-major' if column_major else 'row-major'})",
         parameters=_parameters(kernel, package, precision, names.n),
         locals=(
-            *([f"const int {names.jacobians} = {wanted};"] if wanted else []),
-            f"const int {names.stream} = lanes_streams({names.n}, {moved});",
+            *(f"const int {flag} = {name}.data != NULL;" for name, flag in names.wanted.items()),
+            *(
+                [f"const int {names.jacobians} = {' || '.join(names.wanted.values())};"]
+                if names.wanted
+                else []
+            ),
+            *([f"if (!{names.jacobians}) return {rows};"] if split else []),
+            f"const int {names.stream} = lanes_streams({names.n}, "
+            + (f"{names.jacobians} ? {total} : {value});" if names.wanted else f"{value});"),
             f"int {names.violated} = 0;",
         ),
         loop=f"ptrdiff_t {names.k} = 0; {names.k} < {names.n}; {names.k} += LANES",
-        body=tuple(_body(kernel, package, names, blocks)),
+        body=tuple(_body(kernel, package, names, blocks[1:] if split else blocks)),
         pens=tuple(names.pens.values()),
         stream=names.stream,
         violated=names.violated,
+        same=rows if column_major and not turned else "",
     )
 
 
 def printed_batches(kernel: Kernel, options: Options) -> Mapping[str, object]:
     """The names that the templates of batches lay out: their declarations, a file for each precision."""
-    held = _names(kernel).held
+    names = names_of(kernel)
     orders = (False, True) if options.layout == "col" else (False,)
-    blocks = {by: _blocks(kernel, held, column_major=by) for by in orders}
+    blocks = {by: printed_blocks(kernel, names, column_major=by) for by in orders}
     files = {
         precision: BatchFile(
             header=(f"{kernel.name}: batches", "", *closing(options)),

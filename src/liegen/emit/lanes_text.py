@@ -26,7 +26,7 @@ class Shuffle:
     """Transposing for vectors of so many lanes.
 
     ``row``: side of the squares that are transposed, side by side. ``picks``: the lanes of two vectors that
-    its steps take. ``join``, ``split``: a vector from the rows ``r`` of all squares, and the rows of ``v``.
+    its steps take. ``join``: a vector from the rows ``r`` of all squares; ``split``: ``put`` for each row of ``v``.
     """
 
     lanes: int
@@ -140,6 +140,7 @@ def split(coefficients: Sequence[float], x: str, prefix: str = "") -> tuple[str,
 
 def _polynomials(precision: Precision) -> Mapping[str, tuple[str, ...]]:
     """The statements by function."""
+
     def table(name: str) -> tuple[float, ...]:
         return getattr(elementary, f"{name}{precision.suffix.upper()}")
 
@@ -156,14 +157,18 @@ def _shuffle(lanes: int) -> Shuffle:
 
     def picks(*starts: int, run: int) -> str:
         """Runs of the first vector, each followed by the same of the second."""
-        return ", ".join(str(i + s * lanes) for start in starts for s in both for i in range(start, start + run))
+        return ", ".join(
+            str(i + s * lanes) for start in starts for s in both for i in range(start, start + run)
+        )
 
     steps = {"EVEN": picks(*range(0, lanes, 2), run=1), "ODD": picks(*range(1, lanes, 2), run=1)}
     if row == ROW:
         steps |= {"LOW": picks(*range(0, lanes, 4), run=2), "HIGH": picks(*range(2, lanes, 4), run=2)}
     rows = [f"LANES_SHUFFLE(v, v, {_numbers(k, k + row)})" for k in range(0, lanes, row)]
-    cut = f"{{ {', '.join(rows if lanes > row else ['v'])} }}"
-    return Shuffle(lanes, row, steps, _joined([f"(r)[{k}]" for k in range(lanes // row)], row), cut)
+    puts = [f"put({i}, {text})" for i, text in enumerate(rows if lanes > row else ["v"])]
+    return Shuffle(
+        lanes, row, steps, _joined([f"(r)[{k}]" for k in range(lanes // row)], row), " ".join(puts)
+    )
 
 
 def _joined(parts: Sequence[str], width: int) -> str:
@@ -177,15 +182,16 @@ def _numbers(start: int, end: int) -> str:
     return ", ".join(map(str, range(start, end)))
 
 
+SHUFFLES = tuple(map(_shuffle, (2, 4, 8, 16)))
 DOUBLES = Lanes(
     precision=DOUBLE, type=np.float64, integer="long long", literal="LL", widths=(8, 4, 2), x86="pd",
     register="d", bias=1023, far=1.5e6, large=1e300, shrink=2.0**-100, top=710.0, bottom=-750.0, lift=54,
     half_pi=elementary.HALF_PI, log_2=elementary.LOG_2, polynomials=_polynomials(DOUBLE),
-    shuffles=tuple(map(_shuffle, (2, 4, 8))),
+    shuffles=SHUFFLES,
 )  # fmt: skip
 SINGLES = Lanes(
     precision=SINGLE, type=np.float32, integer="int", literal="", widths=(16, 8, 4), x86="ps",
     register="", bias=127, far=1.5e3, large=1e37, shrink=2.0**-30, top=89.0, bottom=-105.0, lift=25,
     half_pi=elementary.HALF_PI_F32, log_2=elementary.LOG_2_F32, polynomials=_polynomials(SINGLE),
-    shuffles=tuple(map(_shuffle, (2, 4, 8, 16))),
+    shuffles=SHUFFLES,
 )  # fmt: skip

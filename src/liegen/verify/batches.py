@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from liegen.emit.c_batch import batch_name
+from liegen.emit.precision import DOUBLE, SINGLE, Precision
 from liegen.kernel import Kernel
 from liegen.program import Program
 
 Array = NDArray[np.float64]
+#: NumPy's type by the suffix of a precision.
+DTYPES: Mapping[str, type[np.floating[Any]]] = {DOUBLE.suffix: np.float64, SINGLE.suffix: np.float32}
 Evaluate = Callable[[Mapping[str, Array]], dict[str, Array]]
 
 
@@ -34,9 +37,16 @@ class Out(ctypes.Structure):
     _fields_: ClassVar = [("data", ctypes.c_void_p), ("stride", ctypes.c_ssize_t), ("comp", ctypes.c_ssize_t)]
 
 
-def batch_function(library: ctypes.CDLL, package: str, kernel: Kernel) -> Callable[..., int]:
+def batch_function(
+    library: ctypes.CDLL,
+    package: str,
+    kernel: Kernel,
+    *,
+    column_major: bool = False,
+    precision: Precision = DOUBLE,
+) -> Callable[..., int]:
     """``PACKAGE_NAME_batch`` with its types: n, an ``In`` by argument, an ``Out`` by output, status."""
-    function = library[f"{package}_{batch_name(kernel)}"]
+    function = library[f"{package}_{batch_name(kernel, column_major=column_major, precision=precision)}"]
     outputs = len(kernel.jacobians.outputs)
     function.restype = ctypes.c_int
     function.argtypes = [ctypes.c_ssize_t, *[In] * len(kernel.arguments), *[Out] * outputs, ctypes.c_void_p]
