@@ -35,10 +35,10 @@ BUILDS = {
 CANARY = 777.0
 
 
-def built(kernels: Sequence[Kernel], folder: Path, flags: Sequence[str]) -> ctypes.CDLL:
-    """The C of the kernels in all layouts and precisions, compiled without contraction of a*b+c."""
+def built(kernels: Sequence[Kernel], folder: Path, flags: Sequence[str], layout: str = "col") -> ctypes.CDLL:
+    """The C of the kernels in both precisions, compiled without contraction of a*b+c."""
     folder.mkdir(exist_ok=True)
-    files = render(kernels, ["c"], package=PACKAGE, regenerate="", layout="col", scalar="float")
+    files = render(kernels, ["c"], package=PACKAGE, regenerate="", layout=layout, scalar="float")
     for path, text in files.items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")
