@@ -30,8 +30,6 @@ FLAGS = (
     "-Wextra",
     "-Werror",
     "-pedantic",
-    "-shared",
-    "-fPIC",
 )
 
 
