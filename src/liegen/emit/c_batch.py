@@ -16,9 +16,8 @@ from .target import Options, words
 #: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
 BATCH_NAMES = words("""
     LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
-    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_WHOLE block_value block_jacobians
-    block_value_cm block_jacobians_cm
-    ptrdiff_t uint8_t
+    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_WHOLE
+    block_value block_jacobians block_value_cm block_jacobians_cm ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
 #: Longest call, without the indentation of the loop.
 _WIDTH = 92

@@ -26,7 +26,8 @@ class Shuffle:
     """Transposing for vectors of so many lanes.
 
     ``row``: side of the squares that are transposed, side by side. ``picks``: the lanes of two vectors that
-    its steps take. ``join``: a vector from the rows ``r`` of all squares; ``split``: ``put`` for each row of ``v``.
+    its steps take. ``join``: a vector from the rows ``r`` of all squares. ``split``: ``put`` for each row of
+    ``v``.
     """
 
     lanes: int
@@ -46,9 +47,9 @@ class Lanes:
     """A scalar type in vectors. Numbers are spelt as doubles: :func:`in_single` rounds those of floats.
 
     ``widths`` by AVX-512, AVX and SSE2; ``integer`` is as wide as the type. ``x86`` ends the names of the
-    machine's functions, ``register`` that of its vectors. ``far``: larger arguments of sin and cos go to libm.
-    ``shrink``: what numbers above ``large`` are multiplied by. ``top``, ``bottom``: where exp is infinite, and
-    where it is 0. ``lift``: the power of two that makes denormal numbers normal.
+    machine's functions, ``register`` that of its vectors. ``far``: larger arguments of sin and cos are left
+    to libm. ``shrink``: what numbers above ``large`` are multiplied by. ``top``, ``bottom``: where exp is
+    infinite, and where it is 0. ``lift``: the power of two that makes denormal numbers normal.
     """
 
     precision: Precision

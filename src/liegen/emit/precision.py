@@ -13,7 +13,7 @@ from .syntax import spell
 
 @dataclass(frozen=True)
 class Precision:
-    """A scalar type of C: its name, what functions on it end with, here and in libm; how constants are spelt."""
+    """A scalar type of C, and how constants are spelt. ``suffix``, ``libm``: ends of functions' names."""
 
     type: str
     suffix: str

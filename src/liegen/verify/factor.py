@@ -19,6 +19,7 @@ from .gradient import gradient, not_applicable
 from .in_place import in_place
 from .normal_terms import normal_terms
 from .report import Check, FactorReport
+from .single import single
 from .taylor import taylor
 from .unit_length import off_unit
 
@@ -63,6 +64,7 @@ def _checks(
     weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
     terms = [normal_terms(function, place, drawn, expected)] if gauss_newton else []
+    floats = single(function.kernel, place, drawn.inside, drawn.outside)
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
@@ -75,6 +77,7 @@ def _checks(
             domain(function, drawn, computed, seed),
             *(not_applicable(name, weighting.mode.name) for name in ("differences", "Taylor")),
             *terms,
+            floats,
             _compiled(place),
         )
     return (
@@ -84,6 +87,7 @@ def _checks(
         *(_slopes(function.graph, drawn, expected, computed, results) if function.kernel.variables else ()),
         *terms,
         *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
+        floats,
         _compiled(place),
     )
 
