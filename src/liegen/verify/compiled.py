@@ -24,11 +24,12 @@ Evaluate = Callable[[Mapping[str, Array]], dict[str, Array]]
 #: The output that holds the functions' return values.
 STATUS = "status"
 
-#: No contraction of a*b+c to one rounding: the values are those of NumPy.
+#: No contraction of a*b+c to one rounding: the values are those of NumPy. Without inlining, for time.
 FLAGS = (
     "-std=c99",
     "-O1",
     "-ffp-contract=off",
+    "-DLANES_WHOLE=",
     "-Wall",
     "-Wextra",
     "-Werror",

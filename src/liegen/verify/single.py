@@ -1,6 +1,6 @@
 """Functions and batches on floats, against the function on doubles at the same arguments.
 
-An error may have 16 units in the last place of a float, relative to the largest entry, the largest argument
+An error may have 4 units in the last place of a float, relative to the largest entry, the largest argument
 or 1, and moreover what rounding to floats makes in the program (:mod:`liegen.verify.rounding`). Where that
 rounding decides between two branches, nothing is compared.
 """
@@ -20,14 +20,14 @@ from .backends import Arrays, Workspace, compiled_backends, programs
 from .compiled import STATUS
 from .draws import Sample, batch
 from .report import Check
-from .rounding import TIMES, rounded_otherwise
+from .rounding import rounded_otherwise
 
 Array = NDArray[np.float64]
 
 NAME = "single"
 EPS = float(np.finfo(np.float32).eps)
-BOUND = 16 * EPS
-UNIT = "relative to max(1, s), in single precision"
+BOUND = 4 * EPS
+UNIT = "relative to max(1, s)"
 #: A larger relative change is another branch, or leaves no digits to compare.
 JUMP = 1e-2
 
@@ -76,7 +76,7 @@ def _wanted(kernel: Kernel, place: Workspace, arguments: Arrays) -> Wanted:
             for name, array in exact.items():
                 change[name] = np.maximum(change[name], np.abs(_flat(moved[name] - array)).max(axis=1))
         steady = [change[name] <= JUMP * scale[name] for name in value]
-    allowed = {name: BOUND * scale[name] + TIMES * change[name] for name in value}
+    allowed = {name: BOUND * scale[name] + change[name] for name in value}
     return Wanted(value, allowed, status, np.all(steady, axis=0) | (status != 0))
 
 
