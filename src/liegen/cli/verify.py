@@ -143,9 +143,7 @@ def _print_single(factors: Iterable[FactorReport]) -> None:
     found = [(c.worst, f.factor, c) for f in factors for c in f.checks if c.name == SINGLE and c.checked]
     if found:
         worst, name, check = max(found, key=lambda entry: entry[0])
-        click.echo(
-            f"Single precision: at most {worst:.1e} {check.unit} ({name}), {check.bound:.1e} is allowed"
-        )
+        click.echo(f"Single precision: the largest error is {worst:.2f} {check.unit} ({name})")
 
 
 def _print_off_unit(factors: Iterable[FactorReport]) -> None:
