@@ -11,7 +11,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from liegen.errors import ToolError
@@ -94,8 +94,7 @@ def compile_shared(sources: Sequence[Path], library: Path, flags: Sequence[str])
         for source, made in zip(sources, objects, strict=True)
     ]
     with ThreadPoolExecutor(cores()) as pool:
-        for _ in pool.map(lambda job: _run(command, job), jobs):
-            pass
+        list(pool.map(partial(_run, command), jobs))
     _run(command, [*flags, "-shared", "-o", str(library), *map(str, objects), "-lm"])
 
 
