@@ -7,12 +7,12 @@ import re
 import pytest
 
 from compiler_tools import needs_compiler
-from liegen import library
+from liegen import R1, R3, factor, library, norm
 from liegen.define import Function
 from liegen.emit import render
 from liegen.verify import backends
 from liegen.verify.backends import Workspace, workspace
-from liegen.verify.draws import draw_samples
+from liegen.verify.draws import Sample, draw_samples
 from liegen.verify.single import single
 
 FACTORS = (library.between_se3, library.sfm_cal3_bundler, library.bearing_se2_r2)
@@ -51,6 +51,22 @@ BROKEN = {
     "a sign in the functions of one factor": (FACTORS[0], "se3.c", lambda t: t.replace("2.0f *", "-2.0f *")),
     "the status": (FACTORS[1], "_batch_f32.c", negated),
 }
+
+
+@needs_compiler
+def test_what_no_float_can_hold_is_not_compared() -> None:
+    @factor
+    def far(x: R3, *, z: R1):
+        """Squares of 1e30 overflow in single precision, those of 1e-30 vanish."""
+        return norm(x) - z
+
+    def at(size: float) -> Sample:
+        return Sample("far", {"x": (size, 0.0, 0.0), "z": (0.0,)})
+
+    with workspace([far.kernel]) as place:
+        check = single(far.kernel, place, [at(1e30), at(1e-30), at(1.0)], [])
+    assert check.passed
+    assert check.kept == 1
 
 
 @needs_compiler

@@ -38,7 +38,7 @@ MEASURED = {
 }
 #: Those of checks that not every run has.
 ASKED = {"Gauss-Newton": "J^T J"}
-#: The check of the functions on floats, a line for all factors.
+#: How the checks of functions on floats begin, a line for all factors.
 SINGLE = "single"
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
@@ -140,7 +140,9 @@ def _print(report: Report, seconds: float) -> None:
 
 def _print_single(factors: Iterable[FactorReport]) -> None:
     """The worst of the functions in single precision."""
-    found = [(c.worst, f.factor, c) for f in factors for c in f.checks if c.name == SINGLE and c.checked]
+    found = [
+        (c.worst, f.factor, c) for f in factors for c in f.checks if c.name.startswith(SINGLE) and c.checked
+    ]
     if found:
         worst, name, check = max(found, key=lambda entry: entry[0])
         click.echo(f"Single precision: the largest error is {worst:.2f} {check.unit} ({name})")

@@ -2,19 +2,24 @@
 
 An error may have 4 units in the last place of a float, relative to the largest entry, the largest argument
 or 1, and moreover what rounding to floats makes in the program (:mod:`liegen.verify.rounding`). Where that
-rounding decides between two branches, nothing is compared.
+rounding decides between two branches, and where a step of the program has no number among floats, nothing is
+compared.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.algebra import backend
 from liegen.emit.precision import SINGLE
 from liegen.kernel import Kernel
+from liegen.program import Program
+from liegen.program.program import CONDITIONS, FREE
 
 from .backends import Arrays, Workspace, compiled_backends, programs
 from .compiled import STATUS
@@ -25,7 +30,8 @@ from .rounding import rounded_otherwise
 Array = NDArray[np.float64]
 
 NAME = "single"
-EPS = float(np.finfo(np.float32).eps)
+LIMITS = np.finfo(np.float32)
+EPS = float(LIMITS.eps)
 BOUND = 4 * EPS
 UNIT = "of what rounding may do"
 #: A larger relative change is another branch, or leaves no digits to compare.
@@ -42,23 +48,26 @@ class Wanted:
     decided: NDArray[np.bool_]
 
 
-def single(kernel: Kernel, place: Workspace, inside: Sequence[Sample], outside: Sequence[Sample]) -> Check:
+def single(
+    kernel: Kernel, place: Workspace, inside: Sequence[Sample], outside: Sequence[Sample], name: str = NAME
+) -> Check:
     """Compare all functions in single precision; outside of the domain NaN and status."""
     if place.library is None:
-        return Check(NAME, True, 0.0, 1.0, UNIT, "", 0, note="not checked", checked=False)
+        return Check(name, True, 0.0, 1.0, UNIT, "", 0, note="not checked", checked=False)
     samples = (*inside, *outside)
-    arguments = {name: array.astype(np.float32).astype(np.float64) for name, array in batch(samples).items()}
+    with np.errstate(over="ignore"):
+        arguments = {n: a.astype(np.float32).astype(np.float64) for n, a in batch(samples).items()}
     wanted = _wanted(kernel, place, arguments)
     worst, where = 0.0, ""
-    for backend in compiled_backends(kernel, place, SINGLE):
-        found = backend.evaluate(arguments)
+    for function in compiled_backends(kernel, place, SINGLE):
+        found = function.evaluate(arguments)
         ratios = [np.where(found.pop(STATUS) == wanted.status, 0.0, np.inf)]
         ratios += [_ratio(array, wanted, name) for name, array in found.items()]
         ratio = np.where(wanted.decided, np.max(ratios, axis=0), 0.0)
         if ratio.max(initial=0.0) > worst:
             k = int(ratio.argmax())
-            worst, where = float(ratio[k]), f"{backend.name}, {samples[k].case}"
-    return Check(NAME, worst <= 1.0, worst, 1.0, UNIT, where, int(wanted.decided.sum()))
+            worst, where = float(ratio[k]), f"{function.name}, {samples[k].case}"
+    return Check(name, worst <= 1.0, worst, 1.0, UNIT, where, int(wanted.decided.sum()))
 
 
 def _wanted(kernel: Kernel, place: Workspace, arguments: Arrays) -> Wanted:
@@ -77,7 +86,21 @@ def _wanted(kernel: Kernel, place: Workspace, arguments: Arrays) -> Wanted:
                 change[name] = np.maximum(change[name], np.abs(_flat(moved[name] - array)).max(axis=1))
         steady = [change[name] <= JUMP * scale[name] for name in value]
     allowed = {name: BOUND * scale[name] + change[name] for name in value}
-    return Wanted(value, allowed, status, np.all(steady, axis=0) | (status != 0))
+    steady = np.all(steady, axis=0) & _in_range(kernel.jacobians, arguments)
+    return Wanted(value, allowed, status, steady | (status != 0))
+
+
+def _in_range(program: Program, arguments: Arrays) -> NDArray[np.bool_]:
+    """Where no step overflows, and what is divided by or taken the root of is normal, or 0."""
+    slots: list[Any] = program.run({name: tuple(a.T) for name, a in arguments.items()}, backend("numpy"))
+    fits = np.ones(len(next(iter(arguments.values()))), dtype=np.bool_)
+    for instruction, slot in zip(program.code, slots, strict=True):
+        if instruction.op not in CONDITIONS | FREE:
+            fits &= ~(np.isfinite(slot) & (np.abs(slot) > LIMITS.max))
+        if instruction.op in ("div", "sqrt"):
+            below = np.abs(slots[instruction.args[-1]])
+            fits &= (below == 0) | ~(below < LIMITS.tiny)
+    return fits
 
 
 def _ratio(found: Array, wanted: Wanted, name: str) -> Array:
