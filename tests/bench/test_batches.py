@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compiler_tools import needs_compiler
-from liegen.bench import batches, draws, ours
+from liegen.bench import batch_variants, batches, draws, ours
 from liegen.bench.build import load
 from liegen.bench.ceilings import load_loops, whole
 from liegen.bench.variant import FLAGS, Task
@@ -30,6 +30,40 @@ def test_batches_compute_what_single_calls_do(layout, tmp_path):
         found.append(block.reshape(7, -1) if layout == "aos" else block.reshape(-1, 7).T)
         start += 7 * port.size
     np.testing.assert_allclose(np.concatenate(found, axis=1), expected, rtol=0, atol=1e-14)
+
+
+def test_variants_of_a_batch_compute_what_single_calls_do(tmp_path, monkeypatch):
+    rows = draws.rows(draws.samples(between_se2, "random", 7, 0))
+    (single,) = ours.variants(TASK)
+    expected = load(TASK, single, FLAGS["plain"], tmp_path / "single").results(rows)
+    buffers: list[tuple[batch_variants.Case, dict[str, np.ndarray]]] = []
+
+    def watched(library, task, case, inputs):
+        dtype = np.dtype(batch_variants.DTYPES[case.precision.suffix])
+        into = {p.name: np.full(len(inputs) * p.size, 7.0, dtype) for p in task.outputs}
+        buffers.append((case, into))
+        return run_of(library, task, case, inputs, into)
+
+    run_of = batch_variants.run_of
+    monkeypatch.setattr(batch_variants, "run_of", watched)
+    monkeypatch.setattr(batch_variants, "FACTORS", 7)
+    timed = batch_variants.batch_variants(TASK, rounds=1, seed=0)
+    assert [t.what for t in timed] == [case.what for case, _ in buffers]
+    assert "all, columns, single" in [t.what for t in timed]
+    for case, into in buffers:
+        few = 1e-14 if case.precision.type == "double" else 1e-5
+        start = 0
+        for port in TASK.outputs:
+            found = into[port.name]
+            wanted = expected[:, start : start + port.size]
+            start += port.size
+            if port.name not in case.wanted:
+                assert (found == 7.0).all()
+                continue
+            if case.column_major and len(port.shape) == 2:
+                wanted = wanted.reshape(-1, *port.shape).transpose(0, 2, 1).reshape(7, -1)
+            shaped = found.reshape(-1, 7).T if case.structure_of_arrays else found.reshape(7, -1)
+            np.testing.assert_allclose(shaped, wanted, rtol=0, atol=few * max(1, np.abs(wanted).max()))
 
 
 def test_a_chain_computes_what_single_calls_do(tmp_path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import subprocess
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +13,9 @@ import pytest
 from emit_tools import C99, FLAGS, compiler
 
 from liegen.emit import render
+from liegen.emit.precision import DOUBLE, SINGLE, Precision
 from liegen.kernel import Kernel
-from liegen.verify.batches import In, Out, batch_function
+from liegen.verify.batches import DTYPES, In, Out, batch_function
 
 PACKAGE = "demo"
 #: Widths, with and without fused operations where this machine has them.
@@ -25,6 +26,7 @@ BUILDS = {
     "2 lanes": ["-DLANES=2"],
     "4 lanes": ["-DLANES=4"],
     "8 lanes": ["-DLANES=8"],
+    "16 lanes": ["-DLANES=16"],
     "streams": ["-DDEMO_STREAM_BYTES=0"],
     "widest, streams": ["-march=native", "-ffp-contract=off", "-DDEMO_STREAM_BYTES=0"],
     "threads": ["-fopenmp", "-DDEMO_OPENMP"],
@@ -33,10 +35,11 @@ BUILDS = {
 CANARY = 777.0
 
 
-def built(kernels: Sequence[Kernel], folder: Path, flags: Sequence[str]) -> ctypes.CDLL:
-    """The C of the kernels, compiled without contraction to fused operations."""
+def built(kernels: Sequence[Kernel], folder: Path, flags: Sequence[str], layout: str = "col") -> ctypes.CDLL:
+    """The C of the kernels in both precisions, compiled without contraction of a*b+c."""
     folder.mkdir(exist_ok=True)
-    for path, text in render(kernels, ["c"], package=PACKAGE, regenerate="liegen generate").items():
+    files = render(kernels, ["c"], package=PACKAGE, regenerate="", layout=layout, scalar="float")
+    for path, text in files.items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")
     sources = sorted(map(str, (folder / "c").glob("*.c")))
@@ -57,7 +60,7 @@ class Layout:
     offset: int = 0
     gap: int = 0
     structure_of_arrays: bool = False
-    dtype: type = field(default=np.float64)
+    dtype: type = np.float64
 
     def steps(self, n: int, size: int) -> tuple[int, int]:
         return (1, n + self.gap) if self.structure_of_arrays else (size + self.gap, 1)
@@ -71,6 +74,30 @@ class Layout:
         return np.lib.stride_tricks.as_strided(flat[self.offset :], (n, size), (stride, comp))
 
 
+@dataclass(frozen=True)
+class Variant:
+    """One of the functions for a factor."""
+
+    precision: Precision = DOUBLE
+    column_major: bool = False
+
+    @property
+    def dtype(self) -> type:
+        return DTYPES[self.precision.suffix]
+
+    @property
+    def one(self) -> str:
+        """What the name of the function of one factor ends with."""
+        return f"{'_cm' if self.column_major else ''}{self.precision.suffix}"
+
+
+PLAIN = Variant()
+VARIANTS = {
+    "double": PLAIN,
+    "columns": Variant(column_major=True),
+    "single": Variant(SINGLE),
+    "single, columns": Variant(SINGLE, column_major=True),
+}
 PACKED = Layout("packed")
 LAYOUTS = (
     PACKED,
@@ -93,9 +120,11 @@ def call_batch(
     index: Mapping[str, np.ndarray] | None = None,
     broadcast: Sequence[str] = (),
     with_status: bool = True,
+    variant: Variant = PLAIN,
 ) -> tuple[int, dict[str, np.ndarray], np.ndarray | None]:
     """Return value, outputs (n, size) and status; checks that nothing beside the outputs was written."""
     index = index or {}
+    into, outof = (replace(layout, dtype=variant.dtype) for layout in (into, outof))
     ins: list[In] = []
     keep: list[np.ndarray] = []
     for a in kernel.arguments:
@@ -123,7 +152,9 @@ def call_batch(
         for p in ports
     ]
     status = np.full(n + 2, 99, np.uint8)
-    function = batch_function(library, PACKAGE, kernel)
+    function = batch_function(
+        library, PACKAGE, kernel, column_major=variant.column_major, precision=variant.precision
+    )
     code = function(n, *ins, *outs, status.ctypes.data + 1 if with_status else None)
     assert status[0] == status[-1] == 99
     got: dict[str, np.ndarray] = {}

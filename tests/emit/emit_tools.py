@@ -57,11 +57,12 @@ def call_c(
     program: Program,
     values: Values,
     wanted: tuple[str, ...] | None = None,
+    dtype: type = np.float64,
 ) -> tuple[int, dict[str, np.ndarray]]:
     """Status and outputs; outputs that are not wanted are passed as NULL. Entries never written stay 777."""
-    ins = [np.ascontiguousarray(values[p.name], dtype=np.float64) for p in program.inputs]
-    outs = {p.name: np.full(p.shape, 777.0) for p in program.outputs}
-    pointer = ctypes.POINTER(ctypes.c_double)
+    ins = [np.ascontiguousarray(values[p.name], dtype=dtype) for p in program.inputs]
+    outs = {p.name: np.full(p.shape, 777.0, dtype) for p in program.outputs}
+    pointer = ctypes.c_void_p
     args = [a.ctypes.data_as(pointer) for a in ins]
     keep = outs.keys() if wanted is None else wanted
     args += [outs[n].ctypes.data_as(pointer) if n in keep else pointer() for n in outs]

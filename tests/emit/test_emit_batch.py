@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
-from batch_tools import BUILDS, LAYOUTS, PACKED, built, call_batch
+from batch_tools import BUILDS, LAYOUTS, PACKED, VARIANTS, Variant, built, call_batch
 from emit_kernels import bearing_range, examples
 from emit_tools import call_c, samples
 
@@ -18,19 +21,47 @@ N = 19
 KERNELS = pytest.mark.parametrize("kernel", examples(), ids=lambda k: k.name)
 #: Generated code has its own; the functions of one factor call libm.
 OWN = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log"}
+#: Every build of the plain batches, some of the others.
+DEMOS = [(build, "double") for build in BUILDS] + [
+    (build, variant)
+    for build in ("1 lane", "2 lanes", "16 lanes", "widest, streams", "threads, streams")
+    for variant in VARIANTS
+    if variant != "double"
+]
 
 
-@pytest.fixture(scope="module", params=BUILDS)
-def demo(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> object:
-    return built(examples(), tmp_path_factory.mktemp("batch"), BUILDS[request.param])
+@dataclass(frozen=True)
+class Demo:
+    """A build, and which of its functions are meant."""
+
+    library: ctypes.CDLL
+    variant: Variant
+
+    def batch(self, *given, **options):
+        return call_batch(self.library, *given, **options, variant=self.variant)
 
 
-def one_by_one(demo: object, kernel: Kernel, values: dict[str, np.ndarray], n: int):
+@pytest.fixture(scope="module")
+def builds(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], ctypes.CDLL]:
+    return cache(lambda name: built(examples(), tmp_path_factory.mktemp("batch"), BUILDS[name]))
+
+
+@pytest.fixture(params=DEMOS, ids=": ".join)
+def demo(request: pytest.FixtureRequest, builds: Callable[[str], ctypes.CDLL]) -> Demo:
+    build, variant = request.param
+    return Demo(builds(build), VARIANTS[variant])
+
+
+def one_by_one(demo: Demo, kernel: Kernel, values: dict[str, np.ndarray], n: int):
     """Status (n) and outputs (n, size) by the function of one factor."""
-    function = getattr(demo, f"demo_{kernel.name}")
-    rows = [call_c(function, kernel.jacobians, {k: v[i] for k, v in values.items()}) for i in range(n)]
+    function = demo.library[f"demo_{kernel.name}{demo.variant.one}"]
+    dtype = demo.variant.dtype
+    rows = [
+        call_c(function, kernel.jacobians, {k: v[i] for k, v in values.items()}, dtype=dtype)
+        for i in range(n)
+    ]
     stacked = {
-        p.name: np.array([outputs[p.name].ravel() for _, outputs in rows]).reshape(n, p.size)
+        p.name: np.array([outputs[p.name].ravel() for _, outputs in rows], dtype).reshape(n, p.size)
         for p in kernel.jacobians.outputs
     }
     return np.array([code for code, _ in rows], dtype=int), stacked
@@ -39,7 +70,8 @@ def one_by_one(demo: object, kernel: Kernel, values: dict[str, np.ndarray], n: i
 def same(kernel: Kernel, got: np.ndarray, wanted: np.ndarray) -> None:
     """Equal to the last bit, or to a few where an elementary function is the batch's own; NaN equals NaN."""
     if OWN & kernel.jacobians.op_counts().keys():
-        np.testing.assert_allclose(got, wanted, rtol=1e-15, atol=1e-15)
+        few = 4.5 * float(np.finfo(wanted.dtype).eps)
+        np.testing.assert_allclose(got, wanted, rtol=few, atol=few)
         return
     np.testing.assert_array_equal(got, wanted)
     numbers = ~np.isnan(wanted)
@@ -47,11 +79,11 @@ def same(kernel: Kernel, got: np.ndarray, wanted: np.ndarray) -> None:
 
 
 @KERNELS
-def test_any_n(demo: object, kernel: Kernel) -> None:
+def test_any_n(demo: Demo, kernel: Kernel) -> None:
     for n in (*range(18), 64, 65):
         values = samples(kernel, n, (max(n, 1),))
         status, wanted = one_by_one(demo, kernel, values, n)
-        code, got, bits = call_batch(demo, kernel, values, n)
+        code, got, bits = demo.batch(kernel, values, n)
         assert code == int(np.bitwise_or.reduce(status, initial=0))
         np.testing.assert_array_equal(bits, status)
         for name, array in wanted.items():
@@ -59,23 +91,23 @@ def test_any_n(demo: object, kernel: Kernel) -> None:
 
 
 @KERNELS
-def test_any_layout(demo: object, kernel: Kernel) -> None:
+def test_any_layout(demo: Demo, kernel: Kernel) -> None:
     values = samples(kernel, 1, (N,))
     _, wanted = one_by_one(demo, kernel, values, N)
     for into in LAYOUTS:
         for outof in LAYOUTS:
-            _, got, _ = call_batch(demo, kernel, values, N, into=into, outof=outof)
+            _, got, _ = demo.batch(kernel, values, N, into=into, outof=outof)
             for name, array in wanted.items():
                 same(kernel, got[name], array)
 
 
 @KERNELS
-def test_any_output_may_be_null(demo: object, kernel: Kernel) -> None:
+def test_any_output_may_be_null(demo: Demo, kernel: Kernel) -> None:
     values = samples(kernel, 2, (N,))
     names = [p.name for p in kernel.jacobians.outputs]
-    _, everything, bits = call_batch(demo, kernel, values, N)
+    _, everything, bits = demo.batch(kernel, values, N)
     for wanted in ([], *([name] for name in names), names[1:]):
-        _, got, status = call_batch(demo, kernel, values, N, wanted=wanted)
+        _, got, status = demo.batch(kernel, values, N, wanted=wanted)
         assert list(got) == wanted
         np.testing.assert_array_equal(status, bits)
         for name in wanted:
@@ -83,7 +115,7 @@ def test_any_output_may_be_null(demo: object, kernel: Kernel) -> None:
 
 
 @KERNELS
-def test_index_and_broadcast(demo: object, kernel: Kernel) -> None:
+def test_index_and_broadcast(demo: Demo, kernel: Kernel) -> None:
     rng = np.random.default_rng(3)
     values = samples(kernel, 3, (5,))
     first, *others = [a.name for a in kernel.arguments]
@@ -91,7 +123,7 @@ def test_index_and_broadcast(demo: object, kernel: Kernel) -> None:
     gathered = {first: np.repeat(values[first][:1], N, axis=0)} | {k: values[k][i] for k, i in index.items()}
     _, wanted = one_by_one(demo, kernel, gathered, N)
     for outof in (PACKED, LAYOUTS[3]):
-        _, got, _ = call_batch(demo, kernel, values, N, outof=outof, index=index, broadcast=[first])
+        _, got, _ = demo.batch(kernel, values, N, outof=outof, index=index, broadcast=[first])
         for name, array in wanted.items():
             same(kernel, got[name], array)
 
@@ -116,10 +148,10 @@ def test_arguments_may_be_named_as_variables_of_the_batch(tmp_path: Path) -> Non
         np.testing.assert_array_equal(got[name], array)
 
 
-def test_status_may_be_null(demo: object) -> None:
+def test_status_may_be_null(demo: Demo) -> None:
     kernel = next(k for k in examples() if k.value.requirements)
     values = samples(kernel, 4, (N,))
-    code, _, status = call_batch(demo, kernel, values, N)
+    code, _, status = demo.batch(kernel, values, N)
     assert code != 0
     assert 0 < np.count_nonzero(status) < N
-    assert call_batch(demo, kernel, values, N, with_status=False)[0] == code
+    assert demo.batch(kernel, values, N, with_status=False)[0] == code

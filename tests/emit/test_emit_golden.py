@@ -23,7 +23,9 @@ GOLDEN = Path(__file__).parent / "golden"
 
 
 def rendered() -> dict[str, str]:
-    return render(examples(), ["numpy", "c"], package="demo", regenerate=REGENERATE, layout="col")
+    return render(
+        examples(), ["numpy", "c"], package="demo", regenerate=REGENERATE, layout="col", scalar="float"
+    )
 
 
 def golden_path(path: str) -> Path:
@@ -54,7 +56,7 @@ def test_same_bytes_for_every_hash_seed(seed: str) -> None:
 
 
 #: Their headers are short: what a factor is, is said once for C.
-SHORT = ("_batch.c", "_batch.h", "_lanes.h", "_math.h")
+SHORT = ("_batch.c", "_batch_f32.c", "_batch.h", "_lanes.h", "_lanes_f32.h", "_math.h")
 SOURCES = sorted(p for p in rendered() if p.endswith((".py", ".c", ".h")))
 
 

@@ -127,6 +127,7 @@ def test_packages(package: str, reason: str) -> None:
         ("f", "f_jacobians", "would both generate f_jacobians"),
         ("f", "f_res", "would both generate f_res"),
         ("f", "f_cm", "would both generate f_cm"),
+        ("f", "f_batch_cm_f32", "would both generate f_batch_cm_f32"),
         ("a_b", "a__b".replace("__", "_") + "_", "would both generate ABJacobians"),
     ],
 )

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from liegen.charts import PRESETS
 from liegen.charts import preset as read_preset
 from liegen.errors import DefinitionError
+from liegen.native import cores
 from liegen.verify.backends import workspace
 from liegen.verify.draws import AnyFunction
-from liegen.verify.run import Reload, cores
+from liegen.verify.run import Reload
 
 from .figures import measure_function
 from .points import KINDS

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from . import ours
+from .batch_variants import Timed
 from .batches import Profile
 from .callgrind import Instructions
 from .draws import RANDOM, SETS, SMALL
@@ -147,6 +148,11 @@ def profile_rows(profile: Profile) -> list[tuple[str, ...]]:
             for layout, ns in size.ns.items()
         ]
     return found
+
+
+def variant_rows(found: Sequence[Timed]) -> list[tuple[str, ...]]:
+    """A row a variant of a batch."""
+    return [(t.what, str(t.operations), f"{t.minimum:.1f}", f"{t.median:.1f}") for t in found]
 
 
 LAYOUT_NAMES = {"aos": "array of structures", "soa": "structure of arrays"}

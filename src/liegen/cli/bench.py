@@ -78,17 +78,19 @@ def _functions(
 def _profile(
     as_json: bool, *, source: str | None, names: Sequence[str], rounds: int, seed: int, largest: int, **_: Any
 ) -> dict[str, Any]:
+    from liegen.bench.batch_variants import FACTORS, batch_variants
     from liegen.bench.batches import SIZES, profile
     from liegen.bench.build import compiler_version
-    from liegen.bench.report import profile_rows
+    from liegen.bench.report import profile_rows, variant_rows
     from liegen.bench.variant import FLAGS, Task
 
     functions = _functions(source, names, chosen(None, DEFAULT))
     sizes = [n for n in SIZES if n <= largest]
     flags = " ".join(FLAGS["plain"])
     found = [profile(Task(f), sizes=sizes, rounds=rounds, seed=seed) for f in functions]
+    variants = [batch_variants(Task(f), rounds=rounds, seed=seed) for f in functions]
     if not as_json:
-        for p in found:
+        for p, timed in zip(found, variants, strict=True):
             click.echo(f"{p.function}: {p.operations} operations, {p.bytes} bytes in and out")
             table(("", "n", "ns a factor", "of arithmetic", "of copying"), profile_rows(p), right=range(1, 5))
             for n in p.left_out:
@@ -98,8 +100,14 @@ def _profile(
                 f"ceilings: {c.scalar:.1f} multiply-adds a ns, {c.vector:.1f} of {c.width} numbers at once; "
                 "shares are ceiling over measured time\n"
             )
+            titles = (f"batches of {FACTORS}", "operations", "min ns a factor", "median ns")
+            table(titles, variant_rows(timed), right=range(1, 4))
+            click.echo()
         click.echo(f"{compiler_version()}, {flags}, one thread")
-    return {"compiler": compiler_version(), "flags": flags, "profiles": [asdict(p) for p in found]}
+    profiles = [
+        asdict(p) | {"variants": [asdict(t) for t in timed]} for p, timed in zip(found, variants, strict=True)
+    ]
+    return {"compiler": compiler_version(), "flags": flags, "profiles": profiles}
 
 
 def _peers(

@@ -152,11 +152,11 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
 )  # fmt: skip
 @click.option(
     "--major", type=click.Choice(MAJORS), default=MAJORS[0], show_default=True,
-    help="Order of matrices in C: col adds functions with column-major Jacobians (suffix _cm).",
+    help="Order of matrices in C: col adds functions and batches with column-major Jacobians (suffix _cm).",
 )  # fmt: skip
 @click.option(
     "--scalar", type=click.Choice(SCALARS), default=SCALARS[0], show_default=True,
-    help="float adds C functions in single precision (suffix _f32).",
+    help="In C: float adds functions and batches in single precision (suffix _f32).",
 )  # fmt: skip
 @convention_options
 @noise_options

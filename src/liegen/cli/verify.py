@@ -38,6 +38,8 @@ MEASURED = {
 }
 #: Those of checks that not every run has.
 ASKED = {"Gauss-Newton": "J^T J"}
+#: How the checks of functions on floats begin, a line for all factors.
+SINGLE = "single"
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
 #: Skipped cases that are named for a factor.
@@ -123,6 +125,7 @@ def _print(report: Report, seconds: float) -> None:
             click.echo(line)
     for line in _skipped(report.factors):
         click.echo(line)
+    _print_single(report.factors)
     _print_off_unit(report.factors)
     click.echo()
     failed = [f.factor for f in report.factors if not f.passed]
@@ -133,6 +136,16 @@ def _print(report: Report, seconds: float) -> None:
         click.echo(f"C was compiled with {report.compiler}")
     else:
         click.echo("C was not checked: there is no C compiler (install gcc or clang, or set CC)")
+
+
+def _print_single(factors: Iterable[FactorReport]) -> None:
+    """The worst of the functions in single precision."""
+    found = [
+        (c.worst, f.factor, c) for f in factors for c in f.checks if c.name.startswith(SINGLE) and c.checked
+    ]
+    if found:
+        worst, name, check = max(found, key=lambda entry: entry[0])
+        click.echo(f"Single precision: the largest error is {worst:.2f} {check.unit} ({name})")
 
 
 def _print_off_unit(factors: Iterable[FactorReport]) -> None:

@@ -1,76 +1,38 @@
-"""Batches in C: one straight-line body on ``lanes``, as many factors as the machine takes at once.
-
-The body is printed once for each program. The type ``lanes`` is a GCC vector or, for other compilers, a
-double; the header of the package (``templates/c/lanes.h.j2``) says which.
-"""
+"""Batches in C: functions that load, compute and store one block of factors after the other."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import wrap
 
 from liegen.kernel import Kernel
-from liegen.program import Program
-from liegen.program.rewrite import Builder, rebuilt
 
+from .c_block import SYNTAX, Block, Names, names_of, printed_blocks, turned_outputs
 from .header import closing
-from .printer import Assignment, Listing, Store, condition_indices, print_program
-from .syntax import CHOICE, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
-from .target import Options, scalar_names, words
-
-#: One strength for comparisons, & and |: compilers warn of one bare within another.
-_CONDITION = CHOICE + 1
-SYNTAX = Syntax(
-    operators={
-        "add": Operator("+", SUM, "sum"), "sub": Operator("-", SUM, "sum"),
-        "mul": Operator("*", PRODUCT, "product"), "div": Operator("/", PRODUCT, "product"),
-        "neg": Operator("-", PREFIX), "lt": Operator("<", _CONDITION), "le": Operator("<=", _CONDITION),
-        "and": Operator("&", _CONDITION, "and"), "or": Operator("|", _CONDITION, "or"),
-    },
-    calls={
-        name: f"lanes_{name}"
-        for name in words("sqrt sin cos tan asin acos atan exp log abs atan2 not select")
-    },
-    constant=spell("NAN", "INFINITY"),
-    truth={True: "LANES_TRUE", False: "LANES_FALSE"},
-    lift="lanes_of({0})",
-    sincos="lanes_sincos({0}, &{1}, &{2})",
-)  # fmt: skip
+from .precision import DOUBLE, SINGLE, Precision, precisions
+from .target import Options, words
 
 #: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
 BATCH_NAMES = words("""
     LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
-    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_APART LANES_FETCH
-    LANES_IN_PLACE block_value block_jacobians block_ahead ptrdiff_t uint8_t
+    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_WHOLE
+    LANES_APART LANES_FETCH LANES_IN_PLACE LANES_LINE block_ahead block_value block_jacobians block_value_cm
+    block_jacobians_cm ptrdiff_t uint8_t
 """).union(SYNTAX.calls.values())
 #: Longest call, without the indentation of the loop.
 _WIDTH = 92
-_FORMATS = {
-    "scalar": "const lanes {0} = {1};",
-    "condition": "const lanes_mask {0} = {1};",
-    "pair": "lanes {0}; {1};",
-}
-
-
-@dataclass(frozen=True)
-class Block:
-    """The function of one program on a block of factors."""
-
-    name: str
-    summary: str
-    parameters: tuple[str, ...]
-    unused: tuple[str, ...]
-    loads: tuple[str, ...]
-    body: tuple[str, ...]
-    stores: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Batch:
-    """The function of a batch: its variables, the head of its loop over blocks, what is done with a block."""
+    """The function of a batch: its variables, the head of its loop over blocks, what is done with a block.
+
+    ``same``: the call of another batch that does the same, and nothing else is needed.
+    """
 
     name: str
+    summary: str
     parameters: tuple[str, ...]
     locals: tuple[str, ...]
     loop: str
@@ -78,126 +40,80 @@ class Batch:
     pens: tuple[str, ...]
     stream: str
     violated: str
-
-
-def batch_name(kernel: Kernel) -> str:
-    """``between_se3_batch``."""
-    return f"{kernel.name}_batch"
-
-
-def without_chosen_conditions(program: Program) -> Program:
-    """Selects between conditions become and, or, not: a select of lanes has numbers as arms."""
-    conditions = condition_indices(program)
-    builder = Builder()
-    place: list[int] = []
-    for ins in program.code:
-        args = tuple(place[a] for a in ins.args)
-        if ins.op == "select" and ins.args[1] in conditions:
-            c, yes, no = args
-            other = builder.emit("and", (builder.emit("not", (c,)), no))
-            place.append(builder.emit("or", (builder.emit("and", (c, yes)), other)))
-        else:
-            place.append(builder.emit(ins.op, args, ins.value))
-    return rebuilt(program, builder.code, place) if conditions else program
-
-
-def _fresh(name: str, used: Collection[str]) -> str:
-    while name in used:
-        name += "_"
-    return name
-
-
-def _assign(assignment: Assignment) -> str:
-    return _FORMATS[assignment.kind].format(assignment.name, assignment.text)
-
-
-def _stores(stores: Sequence[Store]) -> list[str]:
-    return [f"{store.port}[{k}] = {store.text};" for k, store in enumerate(stores)]
-
-
-def _block(kernel: Kernel, program: Program, name: str, held: str) -> Block:
-    listing: Listing = print_program(without_chosen_conditions(program), SYNTAX, scalar_names(kernel))
-    read = {load.port for load in listing.loads}
-    given = [f"const lanes *{a.name}" for a in kernel.arguments]
-    made = [f"lanes *{port.name}" for port in program.outputs]
-    conditions = [f"{held}[{k}] = {text};" for k, text in enumerate(listing.conditions)]
-    jacobians = len(program.outputs) > len(kernel.outputs)
-    return Block(
-        name=name,
-        summary="Value and Jacobians of a block." if jacobians else "Value of a block.",
-        parameters=(*given, *made, *([f"lanes_mask *{held}"] if conditions else [])),
-        unused=tuple(a.name for a in kernel.arguments if a.name not in read),
-        loads=tuple(f"const lanes {load.name} = {load.port}[{load.index}];" for load in listing.loads),
-        body=tuple(map(_assign, (*listing.guard, *listing.body))),
-        stores=(*conditions, *(line for stores in listing.stores for line in _stores(stores))),
-    )
-
-
-def batch_parameters(kernel: Kernel, options: Options, n: str) -> tuple[str, ...]:
-    """The parameters of the batch function."""
-    return (
-        f"ptrdiff_t {n}",
-        *(f"{options.package}_in {a.name}" for a in kernel.arguments),
-        *(f"{options.package}_out {port.name}" for port in kernel.jacobians.outputs),
-        "uint8_t *status",
-    )
+    same: str = ""
 
 
 @dataclass(frozen=True)
-class _Names:
-    """The variables of a batch function, named as nothing of the kernel is."""
+class Ahead:
+    """The function that asks for the arrays of the next block."""
 
-    n: str
-    k: str
-    count: str
-    held: str
-    broken: str
-    violated: str
-    jacobians: str
-    stream: str
-    room: str
-    arrays: Mapping[str, str]
-    pens: Mapping[str, str]
+    parameters: tuple[str, ...]
+    lines: tuple[str, ...]
 
 
-def _names(kernel: Kernel) -> _Names:
-    ports = [*(a.name for a in kernel.arguments), *(p.name for p in kernel.jacobians.outputs)]
-    used = {*ports, *scalar_names(kernel)}
-    arrays = {name: _fresh(f"{name}_lanes", used) for name in ports}
+@dataclass(frozen=True)
+class BatchFile:
+    """A source of batches: for each program a function on a block, and the functions that call them.
 
-    def own(name: str) -> str:
-        return _fresh(name, used)
+    Numbers are spelt as doubles.
+    """
 
-    return _Names(
-        n=own("n"), k=own("k"), count=own("count"), held=own("held"), broken=own("broken"),
-        violated=own("violated"), jacobians=own("jacobians"), stream=own("stream"), room=own("room"),
-        arrays=arrays, pens={p.name: own(f"{p.name}_pen") for p in kernel.jacobians.outputs},
-    )  # fmt: skip
+    header: tuple[str, ...]
+    lanes: str
+    blocks: tuple[Block, ...]
+    ahead: Ahead
+    functions: tuple[Batch, ...]
+
+
+def batch_name(kernel: Kernel, *, column_major: bool = False, precision: Precision = DOUBLE) -> str:
+    """``between_se3_batch``, ``between_se3_batch_cm_f32``."""
+    return f"{kernel.name}_batch{'_cm' if column_major else ''}{precision.suffix}"
+
+
+def batch_names(kernel: Kernel) -> tuple[str, ...]:
+    """Those of all layouts and precisions."""
+    return tuple(
+        batch_name(kernel, column_major=columns, precision=precision)
+        for precision in (DOUBLE, SINGLE)
+        for columns in (False, True)
+    )
+
+
+def _parameters(kernel: Kernel, package: str, precision: Precision, n: str) -> tuple[str, ...]:
+    return (
+        f"ptrdiff_t {n}",
+        *(f"{package}_in{precision.suffix} {a.name}" for a in kernel.arguments),
+        *(f"{package}_out{precision.suffix} {port.name}" for port in kernel.jacobians.outputs),
+        "uint8_t *status",
+    )
 
 
 def _indented(condition: str, lines: Sequence[str]) -> list[str]:
     return [f"if ({condition}) {{", *(f"    {line}" for line in lines), "}"] if lines else []
 
 
-def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) -> list[str]:
-    """What is done with a block: load, compute, blank what is outside of the domain, store."""
-    values = [o.name for o in kernel.outputs]
-    sizes = {p.name: p.size for p in kernel.jacobians.outputs}
-    added = [name for name in sizes if name not in values]
-    bits, place = len(kernel.value.requirements), f"{names.k}, {names.count}"
-    extra = [names.held] if bits else []
+def _body(kernel: Kernel, package: str, names: Names, blocks: Sequence[Block]) -> list[str]:
+    """What is done with a block: load, compute, blank what is outside of the domain, store.
 
-    def call(block: Block, outputs: Sequence[str]) -> list[str]:
-        arguments = [names.arrays[name] for name in (*(a.name for a in kernel.arguments), *outputs)]
-        return wrap(f"{block.name}({', '.join([*arguments, *extra])});", _WIDTH, subsequent_indent="    ")
+    ``blocks``: of the value, and with the Jacobians; or the only one that is called.
+    """
+    sizes = {p.name: p.size for p in kernel.jacobians.outputs}
+    bits, place = len(kernel.value.requirements), f"{names.k}, {names.count}"
+
+    def call(block: Block) -> list[str]:
+        arrays = [names.arrays[name] for name in (*(a.name for a in kernel.arguments), *block.outputs)]
+        passed = [*arrays, *block.flags, *([names.held] if bits else [])]
+        return wrap(f"{block.name}({', '.join(passed)});", _WIDTH, subsequent_indent="    ")
 
     def blank(name: str) -> str:
-        return f"lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
+        wanted = f"if ({names.wanted[name]}) " if name in names.wanted else ""
+        return f"{wanted}lanes_blank({names.arrays[name]}, {sizes[name]}, {names.held}, {bits});"
 
     def store(name: str) -> str:
         pen = f"{names.stream} ? &{names.pens[name]} : NULL"
+        wanted = f"if ({names.wanted[name]}) " if name in names.wanted else ""
         passed = f"{names.arrays[name]}, {names.room}, {pen}"
-        return f"{package}_store({name}, {sizes[name]}, {place}, {passed});"
+        return f"{wanted}{package}_store({name}, {sizes[name]}, {place}, {passed});"
 
     lines = [
         f"const int {names.count} = {names.n} - {names.k} < LANES ? (int)({names.n} - {names.k}) : LANES;"
@@ -212,66 +128,88 @@ def _body(kernel: Kernel, package: str, names: _Names, blocks: Sequence[Block]) 
     lines += [
         f"{package}_load({a.name}, {a.size}, {place}, {names.arrays[a.name]});" for a in kernel.arguments
     ]
-    if added:
-        lines += _indented(names.jacobians, call(blocks[1], [*sizes]))
-        lines += _indented(f"!{names.jacobians}", call(blocks[0], values))
+    if len(blocks) > 1:
+        lines += _indented(names.jacobians, call(blocks[1]))
+        lines += _indented(f"!{names.jacobians}", call(blocks[0]))
     else:
-        lines += call(blocks[0], values)
+        lines += call(blocks[0])
     if bits:
         lines += [f"const int {names.broken} = lanes_status({names.held}, {bits}, {place}, status);"]
         lines += [f"{names.violated} |= {names.broken};"]
-        lines += _indented(names.broken, [blank(name) for name in values])
-        lines += _indented(f"{names.broken} && {names.jacobians}", [blank(name) for name in added])
+        lines += _indented(names.broken, [blank(name) for name in sizes])
     else:
         lines += [f"lanes_status(NULL, 0, {place}, status);"]
-    lines += [store(name) for name in values]
-    return [*lines, *_indented(names.jacobians, [store(name) for name in added])]
+    return [*lines, *(store(name) for name in sizes)]
 
 
-def _ahead(kernel: Kernel, options: Options, names: _Names) -> Mapping[str, tuple[str, ...]]:
-    """The function that asks for the arrays of the next block: its parameters and its lines."""
-    package, outputs = options.package, kernel.jacobians.outputs
-    n, *rest, _ = batch_parameters(kernel, options, names.n)
+def _ahead(kernel: Kernel, package: str, precision: Precision) -> Ahead:
+    names = names_of(kernel)
+    n, *rest, _ = _parameters(kernel, package, precision, names.n)
     place = f"{names.n}, {names.k}"
-    return {
-        "parameters": (n, f"ptrdiff_t {names.k}", *rest),
-        "lines": (
+    return Ahead(
+        parameters=(n, f"ptrdiff_t {names.k}", *rest),
+        lines=(
             *(f"{package}_ahead({a.name}, {a.size}, {place});" for a in kernel.arguments),
-            *(f"{package}_ahead_to({port.name}, {port.size}, {place});" for port in outputs),
+            *(f"{package}_ahead_to({p.name}, {p.size}, {place});" for p in kernel.jacobians.outputs),
         ),
-    }
-
-
-def printed_batch(kernel: Kernel, options: Options) -> Mapping[str, object]:
-    """The names that the batch's template lays out."""
-    names = _names(kernel)
-    programs = [(kernel.value, "block_value"), (kernel.jacobians, "block_jacobians")]
-    blocks = [_block(kernel, p, name, names.held) for p, name in programs[: 2 if kernel.variables else 1]]
-    size = {name: sum(p.size for p in program.outputs) for program, name in programs}
-    values = {o.name for o in kernel.outputs}
-    wanted = " || ".join(f"{p.name}.data != NULL" for p in kernel.jacobians.outputs if p.name not in values)
-    total = (
-        f"{names.jacobians} ? {size['block_jacobians']} : {size['block_value']}"
-        if wanted
-        else str(size["block_value"])
     )
-    batch = Batch(
-        name=f"{options.package}_{batch_name(kernel)}",
-        parameters=batch_parameters(kernel, options, names.n),
+
+
+def _function(
+    kernel: Kernel, package: str, blocks: Sequence[Block], *, column_major: bool, precision: Precision
+) -> Batch:
+    names = names_of(kernel)
+    size = {p.name: p.size for p in kernel.jacobians.outputs}
+    total, value = sum(size.values()), sum(size[o.name] for o in kernel.outputs)
+    passed = [names.n, *(a.name for a in kernel.arguments), *size, "status"]
+    rows = f"{package}_{batch_name(kernel, precision=precision)}({', '.join(passed)})"
+    turned = turned_outputs(kernel) if column_major else frozenset[str]()
+    # a column-major batch without a matrix among its values leaves them to the row-major one
+    split = column_major and bool(names.wanted) and turned.isdisjoint(o.name for o in kernel.outputs)
+    return Batch(
+        name=f"{package}_{batch_name(kernel, column_major=column_major, precision=precision)}",
+        summary=f"n factors ({'column-major' if column_major else 'row-major'})",
+        parameters=_parameters(kernel, package, precision, names.n),
         locals=(
-            *([f"const int {names.jacobians} = {wanted};"] if wanted else []),
-            f"const int {names.stream} = lanes_streams({names.n}, {total});",
+            *(f"const int {flag} = {name}.data != NULL;" for name, flag in names.wanted.items()),
+            *(
+                [f"const int {names.jacobians} = {' || '.join(names.wanted.values())};"]
+                if names.wanted
+                else []
+            ),
+            *([f"if (!{names.jacobians}) return {rows};"] if split else []),
+            f"const int {names.stream} = lanes_streams({names.n}, "
+            + (f"{names.jacobians} ? {total} : {value});" if names.wanted else f"{value});"),
             f"int {names.violated} = 0;",
         ),
         loop=f"ptrdiff_t {names.k} = 0; {names.k} < {names.n}; {names.k} += LANES",
-        body=tuple(_body(kernel, options.package, names, blocks)),
+        body=tuple(_body(kernel, package, names, blocks[1:] if split else blocks)),
         pens=tuple(names.pens.values()),
         stream=names.stream,
         violated=names.violated,
+        same=rows if column_major and not turned else "",
     )
+
+
+def printed_batches(kernel: Kernel, options: Options) -> Mapping[str, object]:
+    """The names that the templates of batches lay out: their declarations, a file for each precision."""
+    names = names_of(kernel)
+    orders = (False, True) if options.layout == "col" else (False,)
+    blocks = {by: printed_blocks(kernel, names, column_major=by) for by in orders}
+    files = {
+        precision: BatchFile(
+            header=(f"{kernel.name}: batches", "", *closing(options)),
+            lanes=f"{options.package}_lanes{precision.suffix}.h",
+            blocks=tuple({block.name: block for by in orders for block in blocks[by]}.values()),
+            ahead=_ahead(kernel, options.package, precision),
+            functions=tuple(
+                _function(kernel, options.package, blocks[by], column_major=by, precision=precision)
+                for by in orders
+            ),
+        )
+        for precision in precisions(options.scalar)
+    }
     return {
-        "blocks": tuple(blocks),
-        "ahead": _ahead(kernel, options, names),
-        "batch": batch,
-        "batch_header": (f"{kernel.name}: batches", "", *closing(options)),
+        "batches": tuple(function for file in files.values() for function in file.functions),
+        **{f"batch{precision.suffix}": file for precision, file in files.items()},
     }

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from liegen.errors import DefinitionError
 from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
-from .c_batch import BATCH_NAMES, batch_name, printed_batch
-from .elementary_text import elementary_text, scalar_text
+from .c_batch import BATCH_NAMES, batch_names, printed_batches
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
+from .lanes_text import DOUBLES, SINGLES
+from .precision import DOUBLE, SINGLE, Precision, precisions
 from .printer import Assignment, Listing, Store, print_program
-from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
+from .scalar_text import scalar_text
+from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax
 from .target import Options, Sheet, Target, scalar_names, words
 
 SYNTAX = Syntax(
@@ -31,36 +31,24 @@ SYNTAX = Syntax(
         "sqrt": "sqrt", "sin": "sin", "cos": "cos", "tan": "tan", "asin": "asin", "acos": "acos",
         "atan": "atan", "exp": "exp", "log": "log", "abs": "fabs", "atan2": "atan2",
     },
-    constant=spell("NAN", "INFINITY"),
+    constant=DOUBLE.constant,
     truth={True: "1", False: "0"},
     choice="{0} ? {1} : {2}",
 )  # fmt: skip
 
 
-def _spell_single(value: float) -> str:
-    with np.errstate(over="ignore", under="ignore"):
-        rounded = np.float32(value)
-    if not np.isfinite(rounded):
-        return SYNTAX.constant(float(rounded))
-    digits = np.format_float_positional if 1e-4 <= abs(rounded) < 1e8 else np.format_float_scientific
-    return f"{digits(rounded, unique=True, trim='0')}f"
+def _syntax(precision: Precision, package: str) -> Syntax:
+    """In double, the functions of angles are the package's own."""
+    calls = {op: f"{name}{precision.libm}" for op, name in SYNTAX.calls.items()}
+    if precision is not DOUBLE:
+        return replace(SYNTAX, calls=calls, constant=precision.constant)
+    return replace(
+        SYNTAX,
+        calls={**calls, "atan2": f"{package}_atan2"},
+        sincos=f"{package}_sincos({{0}}, &{{1}}, &{{2}})",
+    )
 
 
-@dataclass(frozen=True)
-class Precision:
-    """A scalar type of C: its name, the suffix of its functions, how operations on it are spelt."""
-
-    type: str
-    suffix: str
-    syntax: Syntax
-
-
-DOUBLE = Precision("double", "", SYNTAX)
-SINGLE = Precision(
-    "float",
-    "_f32",
-    replace(SYNTAX, calls={op: f"{name}f" for op, name in SYNTAX.calls.items()}, constant=_spell_single),
-)
 _FORMATS = {
     "scalar": "const {0} {1} = {2};",
     "condition": "const int {1} = {2};",
@@ -114,19 +102,11 @@ def value_name(kernel: Kernel) -> str:
 def symbols(kernel: Kernel) -> tuple[str, ...]:
     """What the sources of a kernel define, without the package's prefix, in any layout and precision."""
     single = [f"{name}{SINGLE.suffix}" for name in _names(kernel)]
-    return (*_names(kernel), *single, batch_name(kernel))
+    return (*_names(kernel), *single, *batch_names(kernel))
 
 
 def _names(kernel: Kernel) -> tuple[str, ...]:
     return (kernel.name, value_name(kernel), f"{kernel.name}_cm")
-
-
-def _syntax(precision: Precision, package: str) -> Syntax:
-    """In double, the functions of angles are the package's own."""
-    if precision is not DOUBLE:
-        return precision.syntax
-    calls = {**precision.syntax.calls, "atan2": f"{package}_atan2"}
-    return replace(precision.syntax, calls=calls, sincos=f"{package}_sincos({{0}}, &{{1}}, &{{2}})")
 
 
 def _assign(assignment: Assignment, precision: Precision) -> str:
@@ -220,8 +200,8 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
             f"of a factor has {_BITS} bits in C; join some conditions"
         )
     name = kernel.name
-    precisions = (DOUBLE, SINGLE) if options.scalar == "float" else (DOUBLE,)
-    functions = [f for precision in precisions for f in _functions(kernel, options, precision)]
+    chosen = precisions(options.scalar)
+    functions = [f for precision in chosen for f in _functions(kernel, options, precision)]
     shapes = [f"{a.name}[{' * '.join(map(str, a.shape))}]: {argument_text(a)}" for a in kernel.arguments]
     shapes += [f"{o.name}[{' * '.join(map(str, o.shape))}]: {storage_text(o)}" for o in kernel.outputs]
     shapes += [f"{j}[{m} * {n}]: {m} x {n}, {meaning}" for j, (m, n), meaning in jacobian_texts(kernel)]
@@ -235,8 +215,8 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
         "shapes": (*_overlap(kernel), *shapes),
         "checked": bool(kernel.value.requirements),
         "own_math": any(ins.op in _OWN for ins in kernel.jacobians.code),
-        "fills": tuple((f"{options.package}_{name}_fill{p.suffix}", p.type) for p in precisions),
-        **printed_batch(kernel, options),
+        "fills": tuple((f"{options.package}_{name}_fill{p.suffix}", p.type) for p in chosen),
+        **printed_batches(kernel, options),
     }
 
 
@@ -264,19 +244,21 @@ TARGET = Target(
     keywords={"C": C_KEYWORDS, "C++": CPP_KEYWORDS},
     # "linux" and "unix" are macros of compilers there.
     reserved=words("status NULL NAN INFINITY linux unix sincos").union(
-        SYNTAX.calls.values(), SINGLE.syntax.calls.values(), BATCH_NAMES
+        SYNTAX.calls.values(), _syntax(SINGLE, "").calls.values(), BATCH_NAMES
     ),
     files=HEADERS,
     factor_sheets=(
         Sheet("c/factor.h.j2", "c/{factor}.h"),
         Sheet("c/factor.c.j2", "c/{factor}.c"),
         Sheet("c/batch.c.j2", "c/{factor}_batch.c"),
+        Sheet("c/batch_f32.c.j2", "c/{factor}_batch_f32.c", SINGLE.type),
     ),
     package_sheets=(
         Sheet("c/package.h.j2", "c/{package}.h"),
         Sheet("c/batch.h.j2", "c/{package}_batch.h"),
         Sheet("c/lanes.h.j2", "c/{package}_lanes.h"),
         Sheet("c/math.h.j2", "c/{package}_math.h"),
+        Sheet("c/lanes_f32.h.j2", "c/{package}_lanes_f32.h", SINGLE.type),
     ),
-    package_names={"lane_polynomials": elementary_text(), "polynomials": scalar_text()},
+    package_names={"lanes": DOUBLES, "singles": SINGLES, "polynomials": scalar_text()},
 )

@@ -15,6 +15,7 @@ from liegen.program import Port
 
 from .c_batch import batch_name
 from .header import closing, doc_lines
+from .precision import DOUBLE, SINGLE, Precision
 from .target import Options
 from .templates import lay_out
 
@@ -26,8 +27,9 @@ INT = 5
 class Method:
     """What a compiled factor offers as one gufunc: ``status`` gives a bit mask instead of arrays.
 
-    ``function`` is the C function of batches that it calls, without the package's prefix; ``taken`` are the
-    names of that function's arguments and outputs, in its order. Outputs that the method lacks are NULL.
+    ``function`` is the C function of batches that it calls, without the package's prefix and the precision's
+    suffix; ``taken`` are the names of that function's arguments and outputs, in its order. Outputs that the
+    method lacks are NULL.
     """
 
     name: str
@@ -49,17 +51,21 @@ class Method:
 
 @dataclass(frozen=True)
 class Number:
-    """A type of number: its names in C and NumPy, NumPy's number for it."""
+    """A type of number: the precision that computes in it, its name in NumPy, NumPy's number for it."""
 
-    type: str
+    precision: Precision
     dtype: str
     code: int
 
+    @property
+    def type(self) -> str:
+        """Its name in C."""
+        return self.precision.type
 
-#: In the order in which NumPy tries them: it takes the first that all inputs can be cast to safely. All of
-#: them are computed in double.
-NUMBERS = (Number("float", "float32", 11), Number("double", "float64", 12))
-#: Doubles in the arrays of a block, and the most elements in it.
+
+#: In the order in which NumPy tries them: it takes the first that all inputs can be cast to safely.
+NUMBERS = (Number(SINGLE, "float32", 11), Number(DOUBLE, "float64", 12))
+#: Numbers in the arrays of a block, and the most elements in it.
 ROOM, MOST = 4096, 32
 
 
@@ -164,29 +170,29 @@ def _operands(method: Method) -> tuple[_Operand, ...]:
     return tuple(made)
 
 
-def batch_call(method: Method, package: str, count: str, status: str) -> tuple[tuple[str, ...], str]:
+def batch_call(
+    method: Method, package: str, count: str, status: str, suffix: str = ""
+) -> tuple[tuple[str, ...], str]:
     """A declaration for the outputs that are left out, if any, and the call; operand k is ``v{k}``."""
     names = [port.name for port in (*method.inputs, *method.outputs)]
     passed = [f"v{names.index(name)}" if name in names else "none" for name in method.taken]
-    declared = (f"const {package}_out none = {{NULL, 0, 0}};",) if "none" in passed else ()
-    return declared, f"{package}_{method.function}({', '.join([count, *passed, status])});"
+    declared = (f"const {package}_out{suffix} none = {{NULL, 0, 0}};",) if "none" in passed else ()
+    return declared, f"{package}_{method.function}{suffix}({', '.join([count, *passed, status])});"
 
 
-def _structure(o: _Operand, package: str, data: str, step: str, spacing: str) -> str:
-    kind, index = ("out", "") if o.written else ("in", ", NULL")
+def _structure(o: _Operand, package: str, data: str, step: str, spacing: str, suffix: str) -> str:
+    kind, index = (f"out{suffix}", "") if o.written else (f"in{suffix}", ", NULL")
     return f"const {package}_{kind} v{o.position} = {{{data}, {step}, {spacing}{index}}};"
 
 
 def _loop(method: Method, number: Number, package: str) -> Loop:
     operands = _operands(method)
-    copied = _copied(operands, method, number, package)
-    if number.type != "double":
-        return copied
-    declared, call = batch_call(method, package, "n", "NULL")
+    copied, suffix = _copied(operands, method, number, package), number.precision.suffix
+    declared, call = batch_call(method, package, "n", "NULL", suffix)
     given = [
         _structure(
-            o, package, f"({'' if o.written else 'const '}double *)args[{o.position}]",
-            f"steps[{o.position}] / size", f"c{o.position} / size",
+            o, package, f"({'' if o.written else 'const '}{number.type} *)args[{o.position}]",
+            f"steps[{o.position}] / size", f"c{o.position} / size", suffix,
         )
         for o in operands
     ]  # fmt: skip
@@ -205,13 +211,14 @@ def _loop(method: Method, number: Number, package: str) -> Loop:
 def _copied(operands: Sequence[_Operand], method: Method, number: Number, package: str) -> Loop:
     """The loop through packed copies alone."""
     block = max(1, min(MOST, ROOM // sum(o.size for o in operands)))
-    declared, call = batch_call(method, package, "count", "NULL")
+    suffix = number.precision.suffix
+    declared, call = batch_call(method, package, "count", "NULL", suffix)
     local = [
         line
         for o in operands
         for line in (
-            f"double m{o.position}[{o.size * block}];",
-            _structure(o, package, f"m{o.position}", str(o.size), "1"),
+            f"{number.type} m{o.position}[{o.size * block}];",
+            _structure(o, package, f"m{o.position}", str(o.size), "1", suffix),
         )
     ]
     return Loop(
@@ -237,7 +244,7 @@ def _status_loop(kernel: Kernel, method: Method, number: Number, package: str) -
     """The bits of the requirements that each element violates; the values are computed and dropped."""
     value = replace(method, outputs=kernel.value.outputs)
     copied = _copied(_operands(value), value, number, package)
-    _, call = batch_call(value, package, "count", "bits")
+    _, call = batch_call(value, package, "count", "bits", number.precision.suffix)
     position = len(method.inputs)
     return replace(
         copied,

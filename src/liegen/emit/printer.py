@@ -8,7 +8,7 @@ the program, so floating-point results do not depend on how the text is laid out
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -40,11 +40,15 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """A temporary and its value; for a pair both names, and the statement that fills them."""
+    """A temporary and its value; for a pair both names, and the statement that fills them.
+
+    ``only``: the one output that needs it, empty where more than one do.
+    """
 
     name: str
     kind: Kind
     text: str
+    only: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +184,22 @@ def _loads(program: Program, scalars: Sequence[str], usage: _Usage) -> tuple[Loa
     return tuple(Load(scalars[n], *owners[n]) for n in sorted(read))
 
 
+def _readers(program: Program) -> list[frozenset[str]]:
+    """By instruction, the outputs that need it."""
+    found: list[set[str]] = [set() for _ in program.code]
+    for port, indices in zip(program.outputs, program.results, strict=True):
+        for k in indices:
+            found[k].add(port.name)
+    for k in range(len(program.code) - 1, -1, -1):
+        for a in program.code[k].args:
+            found[a] |= found[k]
+    return [frozenset(names) for names in found]
+
+
+def _only(names: Collection[str]) -> str:
+    return next(iter(names)) if len(names) == 1 else ""
+
+
 def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> Listing:
     """The statements of a program. ``scalars`` names its inputs, in the order of the flat list of inputs."""
     usage = _usage(program)
@@ -187,6 +207,7 @@ def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> L
     pairs = _pairs(program, syntax, usage)
     named = _temporaries(program, syntax, texts, usage, pairs)
     kinds = _kinds(program)
+    readers = _readers(program)
     guard: list[Assignment] = []
     body: list[Assignment] = []
     count = 0
@@ -197,13 +218,15 @@ def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> L
         if k in pairs:
             names = f"t{count}", f"t{count + 1}"
             call = syntax.sincos.format(syntax.result(texts[ins.args[0]]), *names)
-            block.append(Assignment(", ".join(names), "pair", call))
+            block.append(
+                Assignment(", ".join(names), "pair", call, _only(readers[pairs[k][0]] | readers[pairs[k][1]]))
+            )
             texts |= dict(zip(pairs[k], map(Expression, names), strict=True))
             count += 2
             continue
         texts[k] = syntax.express(ins.op, [texts[a] for a in ins.args])
         if k in named:
-            block.append(Assignment(f"t{count}", kinds[k], texts[k].text))
+            block.append(Assignment(f"t{count}", kinds[k], texts[k].text, _only(readers[k])))
             texts[k] = Expression(f"t{count}")
             count += 1
     return Listing(

@@ -14,6 +14,7 @@ from liegen.program.kinds import kinds
 
 from .header import closing, content, package_header
 from .names import check_names
+from .precision import precisions
 from .target import Options, Target
 from .targets import TARGETS
 from .templates import lay_out
@@ -67,6 +68,7 @@ def _render_target(target: Target, kernels: Sequence[Kernel], options: Options) 
         sheet.path.format(package=options.package, factor=kernel.name): lay_out(sheet.template, names)
         for kernel, names in zip(kernels, printed, strict=True)
         for sheet in target.factor_sheets
+        if sheet.made(options)
     }
     shared = {
         "package": options.package,
@@ -75,9 +77,10 @@ def _render_target(target: Target, kernels: Sequence[Kernel], options: Options) 
         "content": content(kernels).capitalize(),
         "guard_macro": f"{options.package}_H".upper(),
         "factors": printed,
+        "precisions": precisions(options.scalar),
         **target.package_names,
     }
-    for sheet in target.package_sheets:
+    for sheet in filter(lambda sheet: sheet.made(options), target.package_sheets):
         files[sheet.path.format(package=options.package)] = lay_out(sheet.template, shared)
     return files
 

@@ -20,10 +20,18 @@ class Options:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A template and the path of what it makes, a pattern in ``package`` and ``factor``."""
+    """A template and the path of what it makes, a pattern in ``package`` and ``factor``.
+
+    ``scalar``: made only where this scalar is chosen.
+    """
 
     template: str
     path: str
+    scalar: str = ""
+
+    def made(self, options: Options) -> bool:
+        """Whether the caller's choice includes it."""
+        return self.scalar in ("", options.scalar)
 
 
 @dataclass(frozen=True)

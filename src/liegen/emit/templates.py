@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from .header import c_comment, c_string, docstring, hash_comment
+from .precision import in_single
 
 
 def template_folder() -> Path:
@@ -35,6 +36,7 @@ def _environment() -> Environment:
         "c_string": c_string,
         "docstring": docstring,
         "hash_comment": hash_comment,
+        "in_single": in_single,
     }
     environment.filters.update(filters)
     return environment

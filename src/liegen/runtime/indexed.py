@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from liegen.emit.loops import Method
+from liegen.emit.loops import NUMBERS, Method
 from liegen.program import Port
 
 from .calls import Evaluate
@@ -129,14 +129,14 @@ def _leading(method: Method, port: Port, array: Array, length: int) -> bool:
 
 def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> Evaluate:
     """A method through the C function of batches; the interpreter's lock is released while it runs."""
-    function = _function(library, method)
+    functions = {np.dtype(n.dtype): _function(library, method, n.precision.suffix) for n in NUMBERS}
     n, given = indices.length, len(method.inputs)
     order = [port.name for port in (*method.inputs, *method.outputs)]
     places = [order.index(name) if name in order else None for name in method.taken[given:]]
 
     def evaluate(*arrays: Any, out: Any = None) -> Any:
         values = [np.asarray(array) for array in arrays]
-        final, dtype = number(values), np.dtype(np.float64)
+        dtype = number(values)
         inputs, passed = structures(method, values, indices, dtype)
         made_here: list[_Out] = []
         results: list[Array] = []
@@ -146,8 +146,8 @@ def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> E
             made_here.append(_Out(made.ctypes.data, *steps(made, port.shape)))
             results.append(made)
         wanted = (_Out(None, 0, 0) if p is None else made_here[p - given] for p in places)
-        function(n, *passed, *wanted, None)
-        return handed(results, final, out)
+        functions[dtype](n, *passed, *wanted, None)
+        return handed(results, dtype, out)
 
     return evaluate
 
@@ -166,8 +166,8 @@ def structures(
     return inputs, [made[name] for name in method.taken[: len(inputs)]]
 
 
-def _function(library: ctypes.CDLL, method: Method) -> Callable[..., int]:
-    function = library[f"{PACKAGE}_{method.function}"]
+def _function(library: ctypes.CDLL, method: Method, suffix: str) -> Callable[..., int]:
+    function = library[f"{PACKAGE}_{method.function}{suffix}"]
     inputs, total = len(method.inputs), len(method.taken)
     function.argtypes = [ctypes.c_ssize_t, *[Input] * inputs, *[_Out] * (total - inputs), ctypes.c_void_p]
     function.restype = ctypes.c_int

@@ -14,6 +14,7 @@ from liegen.emit.gathers import gathers_source
 from liegen.emit.header import doc_lines, interface_doc
 from liegen.emit.loops import Method, loops_source, methods
 from liegen.emit.numpy_target import camel
+from liegen.emit.precision import SINGLE
 from liegen.emit.sums import sums_source
 from liegen.emit.target import Options
 from liegen.kernel import Kernel
@@ -72,8 +73,10 @@ def emitted(kernel: Kernel, *, summed: bool = False) -> Source:
 
     Raises DefinitionError for names that a language refuses.
     """
-    options = Options(PACKAGE, f"liegen.compile({kernel.name})")
-    files = render([kernel], ("c", "numpy"), package=PACKAGE, regenerate=options.regenerate)
+    options = Options(PACKAGE, f"liegen.compile({kernel.name})", scalar=SINGLE.type)
+    files = render(
+        [kernel], ("c", "numpy"), package=PACKAGE, regenerate=options.regenerate, scalar=options.scalar
+    )
     c = {path.removeprefix("c/"): text for path, text in files.items() if path.startswith("c/")}
     del c[f"{kernel.name}.c"]  # the functions of a single element, which no loop calls
     several = len(kernel.outputs) > 1

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from liegen.emit import render
 from liegen.emit.importing import load_modules
+from liegen.emit.precision import DOUBLE, SINGLE, Precision
 from liegen.kernel import Kernel
 from liegen.program import Program
 
@@ -51,7 +52,10 @@ def workspace(kernels: Sequence[Kernel]) -> Generator[Workspace]:
     """Render the kernels to a temporary folder and compile them. Raises ToolError when C does not compile."""
     with tempfile.TemporaryDirectory(prefix="liegen-verify-") as name:
         folder = Path(name)
-        for path, text in render(kernels, TARGETS, package=PACKAGE, regenerate="liegen verify").items():
+        files = render(
+            kernels, TARGETS, package=PACKAGE, regenerate="liegen verify", layout="col", scalar=SINGLE.type
+        )
+        for path, text in files.items():
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_text(text, encoding="utf-8")
         library, compiler = compile_c(folder / "c", folder)
@@ -60,12 +64,13 @@ def workspace(kernels: Sequence[Kernel]) -> Generator[Workspace]:
 
 def backends(kernel: Kernel, place: Workspace) -> tuple[Backend, ...]:
     """Everything that computes this factor: programs, NumPy functions and, if compiled, C functions."""
-    compiled = c_backends(kernel, place.library, PACKAGE) if place.library else ()
-    return (
-        *programs(kernel),
-        *numpy_backends(kernel, place.folder),
-        *(Backend(name, jacobians, evaluate) for name, jacobians, evaluate in compiled),
-    )
+    return (*programs(kernel), *numpy_backends(kernel, place.folder), *compiled_backends(kernel, place))
+
+
+def compiled_backends(kernel: Kernel, place: Workspace, precision: Precision = DOUBLE) -> tuple[Backend, ...]:
+    """The compiled C functions of one factor and of batches; none without a compiler."""
+    found = c_backends(kernel, place.library, PACKAGE, precision) if place.library else ()
+    return tuple(Backend(name, jacobians, evaluate) for name, jacobians, evaluate in found)
 
 
 def programs(kernel: Kernel) -> tuple[Backend, ...]:

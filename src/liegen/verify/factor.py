@@ -19,6 +19,7 @@ from .gradient import gradient, not_applicable
 from .in_place import in_place
 from .normal_terms import normal_terms
 from .report import Check, FactorReport
+from .single import single
 from .taylor import taylor
 from .unit_length import off_unit
 
@@ -62,7 +63,12 @@ def _checks(
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
     weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
-    terms = [normal_terms(function, place, drawn, expected)] if gauss_newton else []
+    floats = [single(function.kernel, place, drawn.inside, drawn.outside)]
+    terms: list[Check] = []
+    if gauss_newton:
+        terms += [normal_terms(function, place, drawn, expected)]
+        kernel, name = function.gauss_newton_kernel, "single, Gauss-Newton"
+        floats += [single(kernel, place, drawn.inside, drawn.outside, name)]
     singles = {
         f"{b.name}, one at a time": _one_at_a_time(b, drawn) for b in computed if b.name.startswith(TAKEN)
     }
@@ -75,6 +81,7 @@ def _checks(
             domain(function, drawn, computed, seed),
             *(not_applicable(name, weighting.mode.name) for name in ("differences", "Taylor")),
             *terms,
+            *floats,
             _compiled(place),
         )
     return (
@@ -84,6 +91,7 @@ def _checks(
         *(_slopes(function.graph, drawn, expected, computed, results) if function.kernel.variables else ()),
         *terms,
         *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
+        *floats,
         _compiled(place),
     )
 

@@ -7,7 +7,7 @@ sign or a missing term changes the values and not this spread.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +30,7 @@ def rounding(program: Program, arguments: Mapping[str, Array]) -> dict[str, Arra
     """By output, the error to allow at each sample: four times the largest change by other roundings."""
     exact = program_evaluator(program)(arguments)
     largest = {name: np.zeros(len(array)) for name, array in exact.items()}
-    for run in range(RUNS):
-        moved = program_evaluator(_rounded_otherwise(program, run))(arguments)
+    for moved in rounded_otherwise(program, arguments, EPS):
         for name, array in exact.items():
             with np.errstate(all="ignore"):
                 flat, other = array.reshape(len(array), -1), moved[name].reshape(len(array), -1)
@@ -41,13 +40,21 @@ def rounding(program: Program, arguments: Mapping[str, Array]) -> dict[str, Arra
     return {name: TIMES * change for name, change in largest.items()}
 
 
-def _rounded_otherwise(program: Program, seed: int) -> Program:
+def rounded_otherwise(
+    program: Program, arguments: Mapping[str, Array], eps: float
+) -> Iterator[Mapping[str, Array]]:
+    """What the program computes where rounding is by ``eps``, several times."""
+    for run in range(RUNS):
+        yield program_evaluator(_moved(program, run, eps))(arguments)
+
+
+def _moved(program: Program, seed: int, eps: float) -> Program:
     signs = np.random.default_rng(seed).choice([-1.0, 1.0], len(program.code))
     builder = Builder()
     place: list[int] = []
     for instruction, sign in zip(program.code, signs, strict=True):
         new = builder.emit(instruction.op, tuple(place[a] for a in instruction.args), instruction.value)
         if instruction.op not in CONDITIONS | FREE:
-            new = builder.emit("mul", (new, builder.const(1.0 + sign * ULPS * EPS)))
+            new = builder.emit("mul", (new, builder.const(1.0 + sign * ULPS * eps)))
         place.append(new)
     return rebuilt(program, builder.code, place)

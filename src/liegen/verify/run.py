@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import NamedTuple, TypeGuard
 
 from liegen.define import Function
 from liegen.modules import every_function
+from liegen.native import cores
 
 from .backends import Workspace, workspace
 from .draws import AnyFunction
@@ -125,9 +125,3 @@ def _parallel(
 
 def _work(source: Reload, place: Workspace, job: Job) -> FactorReport:
     return job.report(source()[job.name], place)
-
-
-def cores() -> int:
-    """How many processes this one may use at once."""
-    affinity = getattr(os, "sched_getaffinity", None)
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
