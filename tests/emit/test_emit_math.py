@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from emit_kernels import between_r2
 from emit_tools import C99, FLAGS, compiler
-from test_emit_lanes import BOUNDS, DENORMAL, SPECIAL, agree, arguments, spread, ulps
+from test_emit_lanes import BOUNDS, DOUBLE, Functions, agree, arguments, spread
 
 from liegen.emit import render
 
@@ -55,6 +55,12 @@ def strict(request: pytest.FixtureRequest, library: ctypes.CDLL) -> ctypes.CDLL:
     return library
 
 
+SPECIAL = np.array(DOUBLE.special)
+
+
+ulps = Functions(DOUBLE, ctypes.CDLL(None)).ulps
+
+
 def call(function: ctypes._CFuncPtr, *arrays: np.ndarray) -> None:
     function.argtypes = [ctypes.c_ssize_t, *[ctypes.c_void_p] * len(arrays)]
     function(len(arrays[0]), *(a.ctypes.data for a in arrays))
@@ -92,7 +98,7 @@ def test_sine_and_cosine_are_within_their_bounds(
     bound = 1.5 if "fast math" in request.node.name else BOUNDS["sin"]
     rng = np.random.default_rng(9)
     quarter = np.pi / 4 * (1 + rng.uniform(-1e-12, 1e-12, 100))
-    x = np.concatenate([arguments("sin"), rng.uniform(-0.8, 0.8, 2000), quarter])
+    x = np.concatenate([arguments("sin", DOUBLE), rng.uniform(-0.8, 0.8, 2000), quarter])
     for got, name in zip(sine_cosine(library, x), ("sin", "cos"), strict=True):
         found = [(ulps(g, getattr(mp, name)(mp.mpf(v))), v) for g, v in zip(got, x, strict=True)]
         assert max(found)[0] <= bound, (name, max(found))
@@ -109,7 +115,7 @@ def test_special_values_are_those_of_the_standard(strict: ctypes.CDLL) -> None:
 
 
 def test_denormal_points_have_an_angle(strict: ctypes.CDLL) -> None:
-    y, x = np.random.default_rng(10).integers(1, 40, (2, 50)) * DENORMAL
+    y, x = np.random.default_rng(10).integers(1, 40, (2, 50)) * DOUBLE.denormal
     got = angle(strict, y, x)
     found = [(ulps(g, mp.atan2(mp.mpf(p), mp.mpf(q))), p, q) for g, p, q in zip(got, y, x, strict=True)]
     assert max(found)[0] <= BOUNDS["atan2"], max(found)
