@@ -48,7 +48,8 @@ def elementwise(
 
 def _block(slopes: Sequence[Any], size: int) -> Chain:
     """The derivative by an operand that has an entry for each of the result, or one for all."""
-    *inner, last = zip(*(s if isinstance(s, tuple) else (s,) for s in slopes), strict=True)
+    factors: list[tuple[Scalar, ...]] = [s if isinstance(s, tuple) else (s,) for s in slopes]
+    *inner, last = zip(*factors, strict=True)
     return (*map(diagonal, inner), column(last) if size == 1 else diagonal(last))
 
 
