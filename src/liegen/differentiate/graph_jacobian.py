@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from liegen.algebra.casadi_backend import ca
+from liegen.algebra.casadi_backend import scalar
 from liegen.algebra.linear import Chain, Matrix, Numbers, eye, plain, stacked, transpose, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
@@ -37,7 +37,7 @@ def expressions(graph: Graph) -> Expressions:
             continue
         operation = node.operation
         scalars[id(node)] = (
-            tuple(ca.SX(float(c)) for c in operation.coords)
+            tuple(scalar(float(c)) for c in operation.coords)
             if isinstance(operation, Leaf)
             else operation.value(*(scalars[id(n)] for n in node.operands))
         )
