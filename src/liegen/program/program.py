@@ -76,10 +76,11 @@ class Program:
         """Return self. Raises ValueError for a reference forward, a wrong arity or a wrong size."""
         total = sum(port.size for port in self.inputs)
         for k, ins in enumerate(self.code):
-            if ins.op not in ARITY or len(ins.args) != ARITY[ins.op]:
+            if len(ins.args) != ARITY.get(ins.op, -1):
                 raise ValueError(f"{self.name}: instruction {k} is no valid {ins.op!r}")
-            if not all(0 <= a < k for a in ins.args):
-                raise ValueError(f"{self.name}: instruction {k} refers to a later one")
+            for a in ins.args:
+                if not 0 <= a < k:
+                    raise ValueError(f"{self.name}: instruction {k} refers to a later one")
             if ins.op == "input" and not 0 <= ins.value < total:
                 raise ValueError(f"{self.name}: instruction {k} reads input {ins.value} of {total}")
         for port, indices in zip(self.outputs, self.results, strict=True):
@@ -150,8 +151,8 @@ class Program:
 
     def op_counts(self) -> dict[str, int]:
         """Number of instructions by kind, inputs and constants left out, in alphabetical order."""
-        counts = Counter(ins.op for ins in self.code if ins.op not in FREE)
-        return dict(sorted(counts.items()))
+        counts = Counter([ins.op for ins in self.code])
+        return {op: count for op, count in sorted(counts.items()) if op not in FREE}
 
     @property
     def operations(self) -> int:

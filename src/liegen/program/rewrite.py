@@ -13,7 +13,7 @@ class Builder:
 
     def __init__(self) -> None:
         self.code: list[Instruction] = []
-        self._index: dict[tuple[str, tuple[int, ...], float], int] = {}
+        self._index: dict[Instruction, int] = {}
 
     def emit(self, op: str, args: tuple[int, ...] = (), value: float = 0.0) -> int:
         """Append an instruction, return its index."""
@@ -24,10 +24,10 @@ class Builder:
         """Return the instruction equal to this one (commutative operands in any order), appended if new."""
         if op in COMMUTATIVE and args[0] > args[1]:
             args = (args[1], args[0])
-        key = (op, args, value)
-        found = self._index.get(key)
-        if found is None:
-            found = self._index[key] = self.emit(op, args, value)
+        ins = Instruction(op, args, value)
+        found = self._index.setdefault(ins, len(self.code))
+        if found == len(self.code):
+            self.code.append(ins)
         return found
 
     def const(self, value: float) -> int:
@@ -61,9 +61,23 @@ def roots(program: Program) -> list[int]:
 def use_counts(program: Program) -> list[int]:
     """How often each instruction is used by another one, an output or a requirement."""
     uses = [0] * len(program.code)
-    for ins in program.code:
-        for a in ins.args:
+    for _, args, _ in program.code:
+        for a in args:
             uses[a] += 1
     for i in roots(program):
         uses[i] += 1
     return uses
+
+
+def needed(program: Program) -> bytearray:
+    """For each instruction 1 where an output or a requirement depends on it, else 0."""
+    live = bytearray(len(program.code))
+    for i in roots(program):
+        live[i] = 1
+    k = len(live)
+    for _, args, _ in reversed(program.code):
+        k -= 1
+        if live[k]:
+            for a in args:
+                live[a] = 1
+    return live

@@ -35,7 +35,7 @@ def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
     """Run all passes; return the program and a row (name, operations left) per pass that ran.
 
     The first row is the program as it came. A pass does not run again on what it returned itself. Every
-    result is validated.
+    result that differs from what the pass was given is validated.
     """
     rows = [("lower", program.operations)]
     returned: dict[str, Program] = {}
@@ -43,6 +43,8 @@ def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
         name = step.__name__
         if name in returned and returned[name] == program:
             continue
-        program = returned[name] = step(program).validate()
-        rows.append((name, program.operations))
+        found = step(program)
+        same = found == program
+        program = returned[name] = program if same else found.validate()
+        rows.append((name, rows[-1][1] if same else program.operations))
     return program, tuple(rows)

@@ -10,7 +10,7 @@ available in both signs, and updates only what depends on it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from heapq import heappop, heappush
 from typing import NamedTuple
@@ -59,77 +59,87 @@ def orientations(nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> t
     return search.assigned(), search.both
 
 
+#: What a move changed: a node, its d, its natural sign and what it paid before.
+_Before = tuple[int, int, int, tuple[int, ...]]
+
+
 class _Search:
+    """``natural[n]``: d from the operands alone, 0 where that leaves it open. ``cost``: see above.
+
+    ``matters[n]``: n pays, or a user does on whose sign that of n acts. ``near[n]`` counts the users that
+    matter: a move of a node with none cannot lower the cost.
+    """
+
     def __init__(self, nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> None:
         self.count = len(nodes)
         demands = sorted(set(outputs))
-        self.nodes = [*nodes, *(Node(Kind.OUTPUT, "out", 0.0, (n,), (s,), 1) for n, s in demands)]
+        self.nodes = [*nodes, *[Node(Kind.OUTPUT, "out", 0.0, (n,), (s,), 1) for n, s in demands]]
         total = len(self.nodes)
         self.users: list[list[int]] = [[] for _ in range(total)]
-        for k, node in enumerate(self.nodes):
-            for a in node.args:
-                self.users[a].append(k)
         self.constant = [node.op == "const" for node in self.nodes]
-        self.shared = [len(self.users[k]) > 1 and not self.constant[k] for k in range(total)]
         self.choice = [node.sign for node in self.nodes]
         for n, s in demands:
             self.choice[n] = s
-        pinned = {self.nodes[k].args[0] for k in range(total) if self.nodes[k].op == "atan2"}
-        for k in range(total):  # the sign of a zero matters on the cut of atan2
-            if self.nodes[k].op == "atan2":
-                self.choice[self.nodes[k].args[0]] = self.nodes[k].signs[0]
+        pinned: set[int] = set()
+        for k, node in enumerate(self.nodes):
+            for a in node.args:
+                self.users[a].append(k)
+            if node.op == "atan2":  # the sign of a zero matters on its cut
+                pinned.add(node.args[0])
+                self.choice[node.args[0]] = node.signs[0]
+        self.shared = [len(users) > 1 for users in self.users]
+        for k, constant in enumerate(self.constant):
+            if constant:
+                self.shared[k] = False
         self.candidates = [
             k
             for k, node in enumerate(self.nodes)
             if self.shared[k] and node.kind not in (Kind.LOGIC, Kind.COMPARISON)
         ]
-        self.fixed = [k in pinned or self.nodes[k].kind is Kind.LEAF for k in range(total)]
+        self.fixed = [k in pinned or node.kind is Kind.LEAF for k, node in enumerate(self.nodes)]
         self.both = [False] * total
         self.natural = [0] * total
         self.d = [0] * total
         self.pays: list[tuple[int, ...]] = [()] * total
         self.demand = [0] * total
+        self.matters = [False] * total
+        self.near = [0] * total
         self.cost = 0
         for k in range(total):
             self.visit(k)
+        self.settle(k for k in range(total) if self.pays[k])
 
     def sign_of(self, node: Node) -> tuple[int, tuple[int, ...]]:
         """(sign in which the node is at hand, operands whose negative it demands)."""
-        d, kind, args = self.d, node.kind, node.args
+        d = self.d
+        kind, op, _, args, signs, _ = node
         if kind == Kind.PRODUCT:
-            b = args[1]
-            # a second sign of a denominator would be a second reciprocal
-            over = node.op == "div" and self.both[b]
-            return d[args[0]] * ((self.natural[b] or self.choice[b]) if over else d[b]), ()
+            a, b = args
+            if op == "div" and self.both[b]:  # a second sign of a denominator would be a second reciprocal
+                return d[a] * (self.natural[b] or self.choice[b]), ()
+            return d[a] * d[b], ()
         if kind == Kind.SUM:
-            s, t = d[args[0]], d[args[1]] * node.signs[1]
-            return (s if s == t else 0), ()
+            s = d[args[0]]
+            return (s if s == d[args[1]] * signs[1] else 0), ()
         if kind == Kind.LEAF:
-            return (0 if node.op == "const" else 1), ()
+            return (0 if op == "const" else 1), ()
         if kind == Kind.ODD:
             return d[args[0]], ()
         if kind == Kind.SELECT:
-            s, t = d[args[1]], d[args[2]] * node.signs[2]
+            s, t = d[args[1]], d[args[2]] * signs[2]
             return (0, (args[2],)) if s * t < 0 else (s or t, ())
         if kind == Kind.COMPARISON:
-            s, t = d[args[0]] * node.signs[0], d[args[1]] * node.signs[1]
+            s, t = d[args[0]] * signs[0], d[args[1]] * signs[1]
             return 1, ((args[1],) if s * t < 0 else ())
         if kind in (Kind.SIGNED, Kind.OUTPUT):
-            return 1, tuple([a for a, s in zip(args, node.signs, strict=True) if d[a] == -s])
+            return 1, tuple([a for a, s in zip(args, signs, strict=True) if d[a] == -s])
         return 1, ()
 
     def visit(self, k: int) -> bool:
         """Bring node k up to date; return whether its users must follow."""
         sign, pays = self.sign_of(self.nodes[k])
         if pays != self.pays[k]:
-            demand = self.demand
-            for a in self.pays[k]:
-                demand[a] -= 1
-                self.cost -= demand[a] == 0
-            for a in pays:
-                self.cost += demand[a] == 0
-                demand[a] += 1
-            self.pays[k] = pays
+            self.pay(k, pays)
         self.natural[k] = sign
         if self.shared[k]:
             sign = 0 if self.both[k] else sign or self.choice[k]
@@ -137,52 +147,79 @@ class _Search:
         self.d[k] = sign
         return changed
 
-    def follow(self, k: int) -> None:
-        """Bring node k and what depends on it up to date."""
-        heap, waiting = [k], {k}
+    def pay(self, k: int, pays: tuple[int, ...]) -> None:
+        """Let node k demand the negatives of these operands, and of no others."""
+        demand = self.demand
+        for a in self.pays[k]:
+            demand[a] -= 1
+            self.cost -= demand[a] == 0
+        for a in pays:
+            self.cost += demand[a] == 0
+            demand[a] += 1
+        self.pays[k] = pays
+
+    def follow(self, k: int) -> list[_Before]:
+        """Bring node k and what depends on it up to date; return what was there before."""
+        d, natural, pays, users, visit = self.d, self.natural, self.pays, self.users, self.visit
+        before: list[_Before] = []
+        heap, last = [k], -1
         while heap:
             n = heappop(heap)
-            waiting.discard(n)
-            if self.visit(n):
-                for user in self.users[n]:
-                    if user not in waiting:
-                        waiting.add(user)
+            if n != last:
+                last = n
+                before.append((n, d[n], natural[n], pays[n]))
+                if visit(n):
+                    for user in users[n]:
                         heappush(heap, user)
+        return before
+
+    def restore(self, before: list[_Before]) -> None:
+        """Undo what :meth:`follow` did."""
+        for n, d, natural, pays in before:
+            self.d[n] = d
+            self.natural[n] = natural
+            if pays != self.pays[n]:
+                self.pay(n, pays)
+
+    def settle(self, changed: Iterable[int]) -> None:
+        """Bring ``matters`` and ``near`` up to date with what these nodes pay."""
+        stack = list(changed)
+        while stack:
+            k = stack.pop()
+            node = self.nodes[k]
+            matters = bool(self.pays[k]) or (self.near[k] > 0 and node.kind not in _SETTLED)
+            if matters != self.matters[k]:
+                self.matters[k] = matters
+                for a in node.args:
+                    self.near[a] += 1 if matters else -1
+                    stack.append(a)
 
     def flip(self, k: int) -> None:
+        """Settle for the other sign."""
         self.choice[k] = -self.choice[k]
-        self.follow(k)
 
     def toggle(self, k: int) -> None:
+        """Have the node at hand in both signs, or no longer."""
         self.both[k] = not self.both[k]
         self.cost += 1 if self.both[k] else -1
-        self.follow(k)
 
     def sweep(self, move: Callable[[int], None], candidates: Sequence[int]) -> bool:
         """Keep each move that lowers the cost, undo the others; return whether one was kept."""
         start = self.cost
-        near = self.behind_payers()
         for k in candidates:
             if self.cost == 0:
                 break
-            if not near[k]:
+            if not self.near[k]:
                 continue
-            before = self.cost
+            cost = self.cost
             move(k)
-            if self.cost >= before:
-                move(k)
+            before = self.follow(k)
+            if self.cost < cost:
+                self.settle([n for n, *_ in before])
             else:
-                near = self.behind_payers()
+                move(k)
+                self.restore(before)
         return self.cost < start
-
-    def behind_payers(self) -> bytearray:
-        """The nodes on whose sign a payment depends: a move of another one cannot lower the cost."""
-        near = bytearray(len(self.nodes))
-        for k in range(len(self.nodes) - 1, -1, -1):
-            if self.pays[k] or (near[k] and self.nodes[k].kind not in _SETTLED):
-                for a in self.nodes[k].args:
-                    near[a] = 1
-        return near
 
     def improve(self) -> None:
         """Flip from the outputs to the inputs (the other way round ended higher), then try both signs."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from heapq import heappop, heappush
 
 from liegen.program.program import FREE, Instruction, Program
-from liegen.program.rewrite import rebuilt, roots
+from liegen.program.rewrite import needed, rebuilt, roots
 
 
 def schedule(program: Program) -> Program:
@@ -50,25 +50,14 @@ def _placed(program: Program, order: Sequence[int]) -> Program:
         place[k] = len(code)
         code.append(Instruction(ins.op, tuple([place[a] for a in ins.args]), ins.value))
 
-    needed = _needed(program)
+    live = needed(program)
     for k in order:
-        if place[k] < 0 and needed[k] and program.code[k].op not in FREE:
+        if place[k] < 0 and live[k] and program.code[k].op not in FREE:
             put(k)
     for k in roots(program):
         if place[k] < 0:
             put(k)
     return rebuilt(program, code, place)
-
-
-def _needed(program: Program) -> list[bool]:
-    needed = [False] * len(program.code)
-    for k in roots(program):
-        needed[k] = True
-    for k in range(len(program.code) - 1, -1, -1):
-        if needed[k]:
-            for a in program.code[k].args:
-                needed[a] = True
-    return needed
 
 
 def _depth_first(program: Program) -> list[int]:
@@ -108,11 +97,11 @@ def _registers(program: Program) -> list[int]:
 
 def _greedy(program: Program) -> list[int]:
     """From the last instruction to the first, always one that makes the fewest operands wait for it."""
-    code, needed = program.code, _needed(program)
+    code, used = program.code, needed(program)
     operands = [[a for a in dict.fromkeys(ins.args) if code[a].op not in FREE] for ins in code]
     users: list[list[int]] = [[] for _ in code]
     for k, found in enumerate(operands):
-        for a in found if needed[k] else ():
+        for a in found if used[k] else ():
             users[a].append(k)
     left = [len(found) for found in users]  # users that are not placed yet
     live = [False] * len(code)
