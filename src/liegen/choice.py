@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import isfinite
 from typing import Any
 
-from liegen.algebra import Scalar
-from liegen.algebra.linear import Matrix, Numbers, is_structural
+from liegen.algebra.linear import Matrix, Vector, is_structural
 from liegen.differentiate import STRATEGIES, Expressions, Linearised
 from liegen.program import Port
 from liegen.program.lower import lower
-from liegen.program.passes.dead_code import dead
 from liegen.program.passes.orientation import Kind
 from liegen.program.passes.sign_sharing import Key, signed
 from liegen.trace import Graph
 
-#: An order is given up where its products are more than so many times those of the best one so far.
+#: An order is given up where its products are more than so many times what the best one so far takes.
 SLACK = 1.5
 
 
@@ -24,27 +24,30 @@ class TooManyError(Exception):
     """More operations than another order takes."""
 
 
-@dataclass(frozen=True, slots=True)
 class Counted:
     """A scalar that stands for ``sign`` times a node; equal operations are one node."""
 
-    ledger: Ledger
-    node: int
-    sign: int
+    __slots__ = ("ledger", "node", "sign")
+
+    def __init__(self, ledger: Ledger, node: int, sign: int) -> None:
+        self.ledger, self.node, self.sign = ledger, node, sign
 
     def __mul__(self, other: Any) -> Counted:
-        one, two = self, self.ledger.scalar(other)
-        ids = (one.node, two.node) if one.node < two.node else (two.node, one.node)
-        return Counted(self.ledger, self.ledger.share(("mul", 0.0, ids, (1, 1))), one.sign * two.sign)
+        ledger = self.ledger
+        two = other if isinstance(other, Counted) else ledger.scalar(other)
+        a, b = self.node, two.node
+        node = ledger.share(("mul", 0.0, (a, b) if a < b else (b, a), (1, 1)))
+        return Counted(ledger, node, self.sign * two.sign)
 
     __rmul__ = __mul__
 
     def __add__(self, other: Any) -> Counted:
-        one, two = self, self.ledger.scalar(other)
+        ledger = self.ledger
+        one, two = self, other if isinstance(other, Counted) else ledger.scalar(other)
         if one.node > two.node:
             one, two = two, one
-        key = ("add", 0.0, (one.node, two.node), (1, one.sign * two.sign))
-        return Counted(self.ledger, self.ledger.share(key), one.sign)
+        node = ledger.share(("add", 0.0, (one.node, two.node), (1, one.sign * two.sign)))
+        return Counted(ledger, node, one.sign)
 
     __radd__ = __add__
 
@@ -60,21 +63,19 @@ class Counted:
 
 @dataclass
 class Ledger:
-    """All nodes so far: each by its operation, and its operands."""
+    """All nodes so far: each by its operation, its operands, and whether it costs nothing."""
 
     index: dict[Key, int]
     operands: list[tuple[int, ...]]
     leaves: list[bool]
-    most: float
-    roots: list[int] = field(default_factory=list[int])
+    most: float = float("inf")
 
     def share(self, key: Key) -> int:
         """The node of an operation, counted if it is new."""
-        found = self.index.get(key)
-        if found is None:
-            if len(self.operands) > self.most:
+        found = self.index.setdefault(key, len(self.operands))
+        if found == len(self.operands):
+            if found > self.most:
                 raise TooManyError
-            found = self.index[key] = len(self.operands)
             self.operands.append(key[2])
             self.leaves.append(key[0] == "const")
         return found
@@ -85,71 +86,91 @@ class Ledger:
             return x
         return Counted(self, self.share(("const", abs(float(x)), (), ())), -1 if x < 0 else 1)
 
-    def copy(self, most: float) -> Ledger:
-        """The same nodes, to go on from."""
-        return Ledger(dict(self.index), list(self.operands), list(self.leaves), most, self.roots)
-
-    def count(self, roots: Sequence[int]) -> int:
-        """Operations that the given nodes, and the graph's own outputs, need."""
+    def count(self, blocks: Iterable[Matrix]) -> int:
+        """Operations that all entries of these matrices need."""
         needed = [False] * len(self.operands)
-        for n in (*self.roots, *roots):
-            needed[n] = True
+        for x in [x for m in blocks for row in m for x in row]:
+            if isinstance(x, Counted):
+                needed[x.node] = True
         for n in range(len(needed) - 1, -1, -1):
             if needed[n]:
                 for a in self.operands[n]:
                     needed[a] = True
         return sum([used and not leaf for used, leaf in zip(needed, self.leaves, strict=True)])
 
-
-def ranked(graph: Graph, values: Expressions, local: Linearised) -> list[tuple[int, str]]:
-    """The strategies with the operations that they take (up to negations), fewest first.
-
-    Left out are those that give the same count as one before, and those that take far more.
-    """
-    base, edges = _begun(graph, values, local)
-    counting = Linearised(edges, local.inner, local.wanted)
-    found: dict[int, str] = {}
-    best = float("inf")
-    start = len(base.operands)
-    for name, strategy in STRATEGIES.items():
-        ledger = base.copy(start + SLACK * best)
-        # scalars carry their ledger: those of the edges are made for this one
-        own = {edge: tuple(_moved(m, ledger) for m in chain) for edge, chain in edges.items()}
+    def taken(self, make: Callable[[], Iterable[Matrix]], best: float) -> float:
+        """Operations of the matrices that ``make`` multiplies out; infinite where those are far above the
+        ``best`` so far, and ``make`` is given up."""
+        self.most = len(self.operands) + SLACK * best
         try:
-            blocks = Linearised(own, counting.inner, counting.wanted).jacobians(strategy)
+            return self.count(make())
         except TooManyError:
-            continue
-        best = min(best, len(ledger.operands) - start)
-        entries = [x for m in blocks.values() for row in m for x in row if isinstance(x, Counted)]
-        found.setdefault(ledger.count([x.node for x in entries]), name)
-    return sorted(found.items())
+            return float("inf")
 
 
-def _begun(
-    graph: Graph, values: Expressions, local: Linearised
-) -> tuple[Ledger, Mapping[tuple[int, int], Numbers]]:
-    """The outputs and all entries of local blocks as nodes; the blocks on these."""
-    outputs = [x for _, node in graph.outputs for x in values.scalars[id(node)]]
-    outputs += [values.scalars[id(d.condition)][0] for d in graph.domain]
-    entries = [x for chain in local.edges.values() for m in chain for row in m for x in row]
-    entries = [x for x in entries if not is_structural(x)]
-    inputs = [(Port(name, (len(coords),)), coords) for name, coords in values.inputs.items()]
-    wanted = [(Port("o", (len(outputs),)), outputs), (Port("e", (len(entries),)), entries)]
-    program = dead(lower(graph.name, inputs, wanted))
+def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) -> tuple[Ledger, list[Matrix]]:
+    """The ledger of all entries of matrices on SX, and these matrices on counted scalars."""
+    entries = [x for m in blocks for row in m for x in row if not is_structural(x)]
+    ports = [(Port(argument, (len(coords),)), coords) for argument, coords in inputs.items()]
+    program = lower(name, ports, [(Port("entries", (len(entries),)), entries)])
     nodes, place = signed(program)
-    index: dict[Key, int] = {(n.op, n.value, n.args, n.signs): k for k, n in enumerate(nodes)}
-    ledger = Ledger(index, [n.args for n in nodes], [n.kind is Kind.LEAF for n in nodes], float("inf"))
-    ledger.roots = [place[i][0] for i in program.results[0]]
-    found = iter([Counted(ledger, *place[i]) for i in program.results[1]])
+    ledger = Ledger(
+        {(n.op, n.value, n.args, n.signs): k for k, n in enumerate(nodes)},
+        [n.args for n in nodes],
+        [n.kind is Kind.LEAF for n in nodes],
+    )
+    found = iter([Counted(ledger, *place[i]) for i in program.results[0]])
+    return ledger, [
+        tuple([tuple([x if is_structural(x) else next(found) for x in row]) for row in m]) for m in blocks
+    ]
 
-    def counted(m: Matrix) -> Matrix:
-        return tuple(tuple([x if is_structural(x) else next(found) for x in row]) for row in m)
 
-    return ledger, {edge: tuple([counted(m) for m in chain]) for edge, chain in local.edges.items()}
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A graph on SX, and its local blocks: as they are or without what cancels, fused or not."""
+
+    graph: Graph
+    values: Expressions
+    local: Linearised
+
+    @property
+    def outputs(self) -> Vector:
+        """The scalars of the graph's outputs and requirements."""
+        nodes = [node for _, node in self.graph.outputs]
+        conditions = [self.values.scalars[id(d.condition)][0] for d in self.graph.domain]
+        return (*[x for node in nodes for x in self.values.scalars[id(node)]], *conditions)
 
 
-def _moved(m: Matrix, ledger: Ledger) -> Matrix:
-    def entry(x: Scalar) -> Scalar:
-        return x if is_structural(x) else Counted(ledger, x.node, x.sign)
+def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
+    """For each way the strategies with the operations that they take (up to negations), fewest first.
 
-    return tuple(tuple([entry(x) for x in row]) for row in m)
+    All ways are on the same symbols. Left out are strategies that give the same count as one before, and
+    those that take far more.
+    """
+    name, inputs = ways[0].graph.name, ways[0].values.inputs
+    blocks = [m for w in ways for m in ((w.outputs,), *_factors(w.local))]
+    ledger, counted = opened(name, inputs, blocks)
+    left = iter(counted)
+    ranking: list[tuple[int, Way, str]] = []
+    best = float("inf")
+    for way in ways:
+        outputs = next(left)
+        local = replace(
+            way.local,
+            edges={edge: tuple([next(left) for _ in chain]) for edge, chain in way.local.edges.items()},
+        )
+        found: dict[float, str] = {}
+        for strategy in STRATEGIES:
+            count = ledger.taken(partial(_multiplied, local, outputs, strategy), best)
+            best = min(best, count)
+            found.setdefault(count, strategy)
+        ranking += [(int(count), way, strategy) for count, strategy in sorted(found.items()) if isfinite(count)]
+    return ranking
+
+
+def _factors(local: Linearised) -> list[Matrix]:
+    return [m for chain in local.edges.values() for m in chain]
+
+
+def _multiplied(local: Linearised, outputs: Matrix, strategy: str) -> list[Matrix]:
+    return [outputs, *local.jacobians(STRATEGIES[strategy]).values()]

@@ -11,7 +11,7 @@ import numpy as np
 from liegen.algebra.linear import Matrix
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import GTSAM, Preset, form_chart
-from liegen.choice import ranked
+from liegen.choice import Way, ranked
 from liegen.differentiate import STRATEGIES, Expressions, expressions, fused, linearised
 from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
@@ -67,20 +67,17 @@ def _candidates(
     graph: Graph, values: Expressions, weighting: Weighting | None
 ) -> Iterator[tuple[str, Program, tuple[tuple[str, int], ...]]]:
     """The order, program and passes of each choice whose count is within ``CLOSE`` of the best one's."""
-    variants = [(graph, values)]
+    ways = [Way(graph, values, local) for local in linearised(graph, values)]
     other = fused(graph)
     if other is not graph:
-        variants.append((other, expressions(other)))
-    found = [
-        (count, name, local, g, v)
-        for g, v in variants
-        for local in linearised(g, v)
-        for count, name in ranked(g, v, local)
-    ]
+        shared = expressions(other, values)
+        ways += [Way(other, shared, local) for local in linearised(other, shared)]
+    found = ranked(ways)
     least = min(count for count, *_ in found)
-    for count, name, local, g, v in found:
+    for count, way, name in found:
         if count <= CLOSE * least:
-            yield name, *optimise(lowered(g, v, local.jacobians(STRATEGIES[name]), weighting))
+            blocks = way.local.jacobians(STRATEGIES[name])
+            yield name, *optimise(lowered(way.graph, way.values, blocks, weighting))
 
 
 def weights_of(graph: Graph, weighting: Weighting | None) -> tuple[Weight, ...]:

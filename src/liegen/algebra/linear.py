@@ -45,9 +45,10 @@ def neg(a: Scalar) -> Scalar:
 
 def times(a: Scalar, b: Scalar) -> Scalar:
     """Return a b; structural factors cost nothing."""
-    for s, other in ((a, b), (b, a)):
-        if type(s) is int and s in (0, 1, -1):
-            return 0 if s == 0 else other if s == 1 else -other
+    if type(a) is int and -1 <= a <= 1:
+        return b if a == 1 else -b if a else 0
+    if type(b) is int and -1 <= b <= 1:
+        return a if b == 1 else -a if b else 0
     return a * b
 
 
@@ -146,9 +147,15 @@ def matmul(a: Matrix, b: Matrix) -> Matrix:
         elif len(terms) == 1 and type(terms[0][0]) is int and terms[0][0] == 1:
             rows.append(terms[0][1])
         else:
-            columns = range(len(nothing))
-            rows.append(tuple([total([times(x, other[j]) for x, other in terms]) for j in columns]))
+            columns = zip(*[other for _, other in terms], strict=True)
+            factors = [x for x, _ in terms]
+            rows.append(tuple([_combined(factors, column) for column in columns]))
     return tuple(rows)
+
+
+def _combined(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    """a . b, where b has many structural zeros."""
+    return total([times(x, y) for x, y in zip(a, b, strict=True) if type(y) is not int or y])
 
 
 def elementwise(f: Callable[[Scalar, Scalar], Scalar], a: Matrix, b: Matrix) -> Matrix:

@@ -26,12 +26,20 @@ class Expressions:
     scalars: Mapping[int, Coordinates]
 
 
-def expressions(graph: Graph) -> Expressions:
-    """Evaluate every node on fresh symbols of the parameters."""
-    inputs = {p.name: symbols(f"{p.name}_", p.storage.size) for p in graph.parameters}
-    scalars: dict[int, Coordinates] = {
-        id(p.node): p.storage.taken(inputs[p.name], normalise=graph.normalise) for p in graph.parameters
-    }
+def expressions(graph: Graph, known: Expressions | None = None) -> Expressions:
+    """Evaluate every node on fresh symbols of the parameters.
+
+    Or on those of another graph of the same parameters, whose expressions are ``known``: the nodes that both
+    graphs have keep their scalars.
+    """
+    inputs = known.inputs if known else _symbols(graph)
+    scalars: dict[int, Coordinates] = (
+        dict(known.scalars)
+        if known
+        else {
+            id(p.node): p.storage.taken(inputs[p.name], normalise=graph.normalise) for p in graph.parameters
+        }
+    )
     for node in graph.nodes():
         if id(node) in scalars:
             continue
@@ -42,6 +50,10 @@ def expressions(graph: Graph) -> Expressions:
             else operation.value(*(scalars[id(n)] for n in node.operands))
         )
     return Expressions(inputs, scalars)
+
+
+def _symbols(graph: Graph) -> dict[str, Coordinates]:
+    return {p.name: symbols(f"{p.name}_", p.storage.size) for p in graph.parameters}
 
 
 @dataclass(frozen=True, eq=False)
