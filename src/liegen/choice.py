@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from math import isfinite
+from itertools import compress
+from operator import not_
 from typing import Any
 
 from liegen.algebra.linear import Matrix, Vector, is_structural
@@ -86,26 +87,32 @@ class Ledger:
             return x
         return Counted(self, self.share(("const", abs(float(x)), (), ())), -1 if x < 0 else 1)
 
-    def count(self, blocks: Iterable[Matrix]) -> int:
-        """Operations that all entries of these matrices need."""
-        needed = [False] * len(self.operands)
+    def needed(self, blocks: Iterable[Matrix]) -> bytes:
+        """For each node up to the last one that the entries of these matrices need 1 or 0."""
+        found = bytearray(len(self.operands))
         for x in [x for m in blocks for row in m for x in row]:
             if isinstance(x, Counted):
-                needed[x.node] = True
-        for n in range(len(needed) - 1, -1, -1):
-            if needed[n]:
+                found[x.node] = 1
+        for n in range(len(found) - 1, -1, -1):
+            if found[n]:
                 for a in self.operands[n]:
-                    needed[a] = True
-        return sum([used and not leaf for used, leaf in zip(needed, self.leaves, strict=True)])
+                    found[a] = 1
+        return bytes(found).rstrip(b"\0")
 
-    def taken(self, make: Callable[[], Iterable[Matrix]], best: float) -> float:
-        """Operations of the matrices that ``make`` multiplies out; infinite where those are far above the
-        ``best`` so far, and ``make`` is given up."""
+    def count(self, needed: bytes) -> int:
+        """Operations among these nodes."""
+        return sum(compress(map(not_, self.leaves), needed))
+
+    def taken(self, make: Callable[[], Iterable[Matrix]], best: float) -> bytes | None:
+        """The nodes that the matrices need which ``make`` multiplies out.
+
+        None where that takes far more operations than ``best``: it is given up.
+        """
         self.most = len(self.operands) + SLACK * best
         try:
-            return self.count(make())
+            return self.needed(make())
         except TooManyError:
-            return float("inf")
+            return None
 
 
 def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) -> tuple[Ledger, list[Matrix]]:
@@ -159,12 +166,14 @@ def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
             way.local,
             edges={edge: tuple([next(left) for _ in chain]) for edge, chain in way.local.edges.items()},
         )
-        found: dict[float, str] = {}
+        found: dict[int, str] = {}
         for strategy in STRATEGIES:
-            count = ledger.taken(partial(_multiplied, local, outputs, strategy), best)
-            best = min(best, count)
-            found.setdefault(count, strategy)
-        ranking += [(int(count), way, strategy) for count, strategy in sorted(found.items()) if isfinite(count)]
+            nodes = ledger.taken(partial(_multiplied, local, outputs, strategy), best)
+            if nodes is not None:
+                count = ledger.count(nodes)
+                best = min(best, count)
+                found.setdefault(count, strategy)
+        ranking += [(count, way, strategy) for count, strategy in sorted(found.items())]
     return ranking
 
 
