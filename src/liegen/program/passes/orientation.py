@@ -56,7 +56,7 @@ def orientations(nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> t
     """
     search = _Search(nodes, outputs)
     search.improve()
-    return search.assigned(), search.both
+    return search.assigned(), search.both[: len(nodes)]
 
 
 #: What a move changed: a node, its d, its natural sign and what it paid before.
