@@ -157,7 +157,7 @@ class Program:
     @property
     def operations(self) -> int:
         """Number of arithmetic instructions: selects, negations, comparisons and calls included."""
-        return sum(self.op_counts().values())
+        return len(self.code) - [ins.op in FREE for ins in self.code].count(True)
 
     def operations_of(self, names: Collection[str]) -> int:
         """Number of arithmetic instructions that the outputs with these names need."""

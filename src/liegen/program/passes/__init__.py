@@ -38,13 +38,15 @@ def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
     result that differs from what the pass was given is validated.
     """
     rows = [("lower", program.operations)]
-    returned: dict[str, Program] = {}
+    version = 0  # of the program; the one that each pass returned
+    returned: dict[str, int] = {}
     for step in (*PASSES * ROUNDS, *FINAL):
         name = step.__name__
-        if name in returned and returned[name] == program:
+        if returned.get(name) == version:
             continue
         found = step(program)
-        same = found == program
-        program = returned[name] = program if same else found.validate()
-        rows.append((name, rows[-1][1] if same else program.operations))
+        if found != program:
+            program, version = found.validate(), version + 1
+        returned[name] = version
+        rows.append((name, program.operations))
     return program, tuple(rows)

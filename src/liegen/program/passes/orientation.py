@@ -107,20 +107,15 @@ class _Search:
         self.cost = 0
         for k in range(total):
             self.visit(k)
-        self.settle(k for k in range(total) if self.pays[k])
+        self.settle([k for k in range(total) if self.pays[k]])
 
     def sign_of(self, node: Node) -> tuple[int, tuple[int, ...]]:
-        """(sign in which the node is at hand, operands whose negative it demands)."""
+        """(sign in which the node is at hand, operands whose negative it demands), but for sums and products."""
         d = self.d
         kind, op, _, args, signs, _ = node
-        if kind == Kind.PRODUCT:
+        if kind == Kind.PRODUCT:  # a quotient: a second sign of the denominator would be a second reciprocal
             a, b = args
-            if op == "div" and self.both[b]:  # a second sign of a denominator would be a second reciprocal
-                return d[a] * (self.natural[b] or self.choice[b]), ()
-            return d[a] * d[b], ()
-        if kind == Kind.SUM:
-            s = d[args[0]]
-            return (s if s == d[args[1]] * signs[1] else 0), ()
+            return d[a] * ((self.natural[b] or self.choice[b]) if self.both[b] else d[b]), ()
         if kind == Kind.LEAF:
             return (0 if op == "const" else 1), ()
         if kind == Kind.ODD:
@@ -137,14 +132,22 @@ class _Search:
 
     def visit(self, k: int) -> bool:
         """Bring node k up to date; return whether its users must follow."""
-        sign, pays = self.sign_of(self.nodes[k])
-        if pays != self.pays[k]:
-            self.pay(k, pays)
+        d, node = self.d, self.nodes[k]
+        if node.op == "mul":
+            a, b = node.args
+            sign, pays = d[a] * d[b], ()
+        elif node.op == "add":
+            a, b = node.args
+            sign, pays = d[a] if d[a] == d[b] * node.signs[1] else 0, ()
+        else:
+            sign, pays = self.sign_of(node)
+            if pays != self.pays[k]:
+                self.pay(k, pays)
         self.natural[k] = sign
         if self.shared[k]:
             sign = 0 if self.both[k] else sign or self.choice[k]
-        changed = sign != self.d[k]
-        self.d[k] = sign
+        changed = sign != d[k]
+        d[k] = sign
         return changed
 
     def pay(self, k: int, pays: tuple[int, ...]) -> None:
@@ -181,9 +184,8 @@ class _Search:
             if pays != self.pays[n]:
                 self.pay(n, pays)
 
-    def settle(self, changed: Iterable[int]) -> None:
+    def settle(self, stack: list[int]) -> None:
         """Bring ``matters`` and ``near`` up to date with what these nodes pay."""
-        stack = list(changed)
         while stack:
             k = stack.pop()
             node = self.nodes[k]
@@ -192,7 +194,8 @@ class _Search:
                 self.matters[k] = matters
                 for a in node.args:
                     self.near[a] += 1 if matters else -1
-                    stack.append(a)
+                    if self.near[a] == matters:  # the first one, or the last one gone
+                        stack.append(a)
 
     def flip(self, k: int) -> None:
         """Settle for the other sign."""

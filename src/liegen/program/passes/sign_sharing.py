@@ -86,6 +86,7 @@ def signed(program: Program) -> tuple[list[Node], list[tuple[int, int]]]:
     return nodes, place
 
 
+_SAME, _OPPOSITE = (1, 1), (1, -1)
 #: Operands as (node, sign).
 _Known = list[tuple[int, int]]
 _Canonical = tuple[str, tuple[int, ...], tuple[int, ...], int]
@@ -97,12 +98,12 @@ def _sum(op: str, known: _Known, zero: int) -> _Canonical:
         t = -t
     if a > b:
         a, b, s, t = b, a, t, s
-    return "add", (a, b), (1, s * t), s
+    return "add", (a, b), _SAME if s == t else _OPPOSITE, s
 
 
 def _product(op: str, known: _Known, zero: int) -> _Canonical:
     (a, s), (b, t) = known
-    return op, (b, a) if a > b and op == "mul" else (a, b), (1, 1), s * t
+    return op, (b, a) if a > b and op == "mul" else (a, b), _SAME, s * t
 
 
 def _odd(op: str, known: _Known, zero: int) -> _Canonical:
