@@ -13,8 +13,8 @@ from liegen.algebra.linear import Matrix, Vector, is_structural
 from liegen.differentiate import STRATEGIES, Expressions, Linearised
 from liegen.program import Port
 from liegen.program.lower import lower
-from liegen.program.passes.orientation import Kind
-from liegen.program.passes.sign_sharing import Key, signed
+from liegen.program.passes.orientation import Node
+from liegen.program.passes.sign_sharing import signed
 from liegen.trace import Graph
 
 #: An order is given up where its products are more than so many times what the best one so far takes.
@@ -37,7 +37,7 @@ class Counted:
         ledger = self.ledger
         two = other if isinstance(other, Counted) else ledger.scalar(other)
         a, b = self.node, two.node
-        node = ledger.share(("mul", 0.0, (a, b) if a < b else (b, a), (1, 1)))
+        node = ledger.share(Node("mul", 0.0, (a, b) if a < b else (b, a), (1, 1)))
         return Counted(ledger, node, self.sign * two.sign)
 
     __rmul__ = __mul__
@@ -47,7 +47,7 @@ class Counted:
         one, two = self, other if isinstance(other, Counted) else ledger.scalar(other)
         if one.node > two.node:
             one, two = two, one
-        node = ledger.share(("add", 0.0, (one.node, two.node), (1, one.sign * two.sign)))
+        node = ledger.share(Node("add", 0.0, (one.node, two.node), (1, one.sign * two.sign)))
         return Counted(ledger, node, one.sign)
 
     __radd__ = __add__
@@ -66,26 +66,26 @@ class Counted:
 class Ledger:
     """All nodes so far: each by its operation, its operands, and whether it costs nothing."""
 
-    index: dict[Key, int]
+    index: dict[Node, int]
     operands: list[tuple[int, ...]]
     leaves: list[bool]
     most: float = float("inf")
 
-    def share(self, key: Key) -> int:
-        """The node of an operation, counted if it is new."""
-        found = self.index.setdefault(key, len(self.operands))
+    def share(self, node: Node) -> int:
+        """The place of a node, counted if it is new."""
+        found = self.index.setdefault(node, len(self.operands))
         if found == len(self.operands):
             if found > self.most:
                 raise TooManyError
-            self.operands.append(key[2])
-            self.leaves.append(key[0] == "const")
+            self.operands.append(node.args)
+            self.leaves.append(not node.args)
         return found
 
     def scalar(self, x: Any) -> Counted:
         """A number as a node."""
         if isinstance(x, Counted):
             return x
-        return Counted(self, self.share(("const", abs(float(x)), (), ())), -1 if x < 0 else 1)
+        return Counted(self, self.share(Node("const", abs(float(x)), (), ())), -1 if x < 0 else 1)
 
     def needed(self, blocks: Iterable[Matrix]) -> bytes:
         """For each node up to the last one that the entries of these matrices need 1 or 0."""
@@ -120,11 +120,11 @@ def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) ->
     entries = [x for m in blocks for row in m for x in row if not is_structural(x)]
     ports = [(Port(argument, (len(coords),)), coords) for argument, coords in inputs.items()]
     program = lower(name, ports, [(Port("entries", (len(entries),)), entries)])
-    nodes, place = signed(program)
+    nodes, _, place = signed(program)
     ledger = Ledger(
-        {(n.op, n.value, n.args, n.signs): k for k, n in enumerate(nodes)},
-        [n.args for n in nodes],
-        [n.kind is Kind.LEAF for n in nodes],
+        {node: k for k, node in enumerate(nodes)},
+        [node.args for node in nodes],
+        [not node.args for node in nodes],
     )
     found = iter([Counted(ledger, *place[i]) for i in program.results[0]])
     return ledger, [

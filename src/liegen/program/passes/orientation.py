@@ -10,7 +10,7 @@ available in both signs, and updates only what depends on it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from heapq import heappop, heappush
 from typing import NamedTuple
@@ -34,27 +34,45 @@ class Kind(IntEnum):
     OUTPUT = 9
 
 
+KINDS: Mapping[str, Kind] = {
+    **dict.fromkeys(("input", "const"), Kind.LEAF),
+    **dict.fromkeys(("add", "sub"), Kind.SUM),
+    **dict.fromkeys(("mul", "div"), Kind.PRODUCT),
+    **dict.fromkeys(("sin", "tan", "asin", "atan"), Kind.ODD),
+    **dict.fromkeys(("cos", "abs"), Kind.EVEN),
+    **dict.fromkeys(("sqrt", "exp", "log", "acos", "atan2"), Kind.SIGNED),
+    **dict.fromkeys(("lt", "le"), Kind.COMPARISON),
+    **dict.fromkeys(("and", "or", "not"), Kind.LOGIC),
+    "select": Kind.SELECT,
+    "out": Kind.OUTPUT,
+}
 #: Their sign does not depend on those of their operands.
 _SETTLED = (Kind.LEAF, Kind.EVEN, Kind.SIGNED, Kind.COMPARISON, Kind.LOGIC, Kind.OUTPUT)
 
 
 class Node(NamedTuple):
-    """An operation on nodes, ``signs`` times ``args``; ``sign`` is the one in which the program had it."""
+    """An operation on nodes, ``signs`` times ``args``; equal ones are one node."""
 
-    kind: Kind
     op: str
     value: float
     args: tuple[int, ...]
     signs: tuple[int, ...]
-    sign: int
+
+    @property
+    def kind(self) -> Kind:
+        """How its sign depends on those of its operands."""
+        return KINDS[self.op]
 
 
-def orientations(nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> tuple[list[int], list[bool]]:
+def orientations(
+    nodes: Sequence[Node], given: Sequence[int], outputs: Sequence[tuple[int, int]]
+) -> tuple[list[int], list[bool]]:
     """Return for each node the sign, 1 or -1, in which it is best computed, and whether both are worth it.
 
-    ``outputs`` are the (node, sign) pairs that must be at hand in the end. Deterministic.
+    ``given`` are the signs to begin with, ``outputs`` the (node, sign) pairs that must be at hand in the end.
+    Deterministic.
     """
-    search = _Search(nodes, outputs)
+    search = _Search(nodes, given, outputs)
     search.improve()
     return search.assigned(), search.both[: len(nodes)]
 
@@ -70,14 +88,17 @@ class _Search:
     matter: a move of a node with none cannot lower the cost.
     """
 
-    def __init__(self, nodes: Sequence[Node], outputs: Sequence[tuple[int, int]]) -> None:
+    def __init__(
+        self, nodes: Sequence[Node], given: Sequence[int], outputs: Sequence[tuple[int, int]]
+    ) -> None:
         self.count = len(nodes)
         demands = sorted(set(outputs))
-        self.nodes = [*nodes, *[Node(Kind.OUTPUT, "out", 0.0, (n,), (s,), 1) for n, s in demands]]
+        self.nodes = [*nodes, *[Node("out", 0.0, (n,), (s,)) for n, s in demands]]
+        self.kinds = [KINDS[node.op] for node in self.nodes]
         total = len(self.nodes)
         self.users: list[list[int]] = [[] for _ in range(total)]
         self.constant = [node.op == "const" for node in self.nodes]
-        self.choice = [node.sign for node in self.nodes]
+        self.choice = [*given, *[1 for _ in demands]]
         for n, s in demands:
             self.choice[n] = s
         pinned: set[int] = set()
@@ -93,10 +114,10 @@ class _Search:
                 self.shared[k] = False
         self.candidates = [
             k
-            for k, node in enumerate(self.nodes)
-            if self.shared[k] and node.kind not in (Kind.LOGIC, Kind.COMPARISON)
+            for k, kind in enumerate(self.kinds)
+            if self.shared[k] and kind not in (Kind.LOGIC, Kind.COMPARISON)
         ]
-        self.fixed = [k in pinned or node.kind is Kind.LEAF for k, node in enumerate(self.nodes)]
+        self.fixed = [k in pinned or kind is Kind.LEAF for k, kind in enumerate(self.kinds)]
         self.both = [False] * total
         self.natural = [0] * total
         self.d = [0] * total
@@ -109,10 +130,10 @@ class _Search:
             self.visit(k)
         self.settle([k for k in range(total) if self.pays[k]])
 
-    def sign_of(self, node: Node) -> tuple[int, tuple[int, ...]]:
+    def sign_of(self, k: int) -> tuple[int, tuple[int, ...]]:
         """(sign in which the node is at hand, operands whose negative it demands), but for sums and products."""
-        d = self.d
-        kind, op, _, args, signs, _ = node
+        d, kind = self.d, self.kinds[k]
+        op, _, args, signs = self.nodes[k]
         if kind == Kind.PRODUCT:  # a quotient: a second sign of the denominator would be a second reciprocal
             a, b = args
             return d[a] * ((self.natural[b] or self.choice[b]) if self.both[b] else d[b]), ()
@@ -140,7 +161,7 @@ class _Search:
             a, b = node.args
             sign, pays = d[a] if d[a] == d[b] * node.signs[1] else 0, ()
         else:
-            sign, pays = self.sign_of(node)
+            sign, pays = self.sign_of(k)
             if pays != self.pays[k]:
                 self.pay(k, pays)
         self.natural[k] = sign
@@ -188,11 +209,10 @@ class _Search:
         """Bring ``matters`` and ``near`` up to date with what these nodes pay."""
         while stack:
             k = stack.pop()
-            node = self.nodes[k]
-            matters = bool(self.pays[k]) or (self.near[k] > 0 and node.kind not in _SETTLED)
+            matters = bool(self.pays[k]) or (self.near[k] > 0 and self.kinds[k] not in _SETTLED)
             if matters != self.matters[k]:
                 self.matters[k] = matters
-                for a in node.args:
+                for a in self.nodes[k].args:
                     self.near[a] += 1 if matters else -1
                     if self.near[a] == matters:  # the first one, or the last one gone
                         stack.append(a)

@@ -10,7 +10,7 @@ from liegen.program.rewrite import Builder
 
 from .dead_code import dead
 from .nary import Pairs, Term
-from .orientation import Kind, Node
+from .orientation import Node
 from .sign_sharing import signed, signs
 
 #: Longest sum or product that is taken apart.
@@ -44,7 +44,7 @@ class Work:
 
     def __init__(self, program: Program) -> None:
         self.program = program
-        self.nodes, self.place = signed(program)
+        self.nodes, _, self.place = signed(program)
         self.results = [self.place[i] for indices in program.results for i in indices]
         self.conditions = [self.place[r.condition][0] for r in program.requirements]
         self.uses = [0] * len(self.nodes)
@@ -53,8 +53,8 @@ class Work:
                 self.uses[a] += 1
         for n in (*[n for n, _ in self.results], *self.conditions):
             self.uses[n] += 1
-        leaves = [node.kind is Kind.LEAF for node in self.nodes]
-        selects = [node.kind is Kind.SELECT for node in self.nodes]
+        leaves = [not node.args for node in self.nodes]
+        selects = [node.op == "select" for node in self.nodes]
         # what is exact stays whole, and what keeps others from overflow
         self.sums = self.flat("add", lambda a, b: leaves[a] and leaves[b])
         self.products = self.flat("mul", lambda a, b: selects[a] or selects[b])
@@ -89,19 +89,19 @@ class Work:
     def improve(self) -> bool:
         """Share pairs, then take out factors; return whether anything was found."""
         start = len(self.nodes)
-        self.share(self.products, Kind.PRODUCT, "mul")
-        self.share(self.sums, Kind.SUM, "add")
+        self.share(self.products, "mul")
+        self.share(self.sums, "add")
         for n in list(self.sums):
             while self.distribute(n):
                 pass
         return len(self.nodes) > start
 
-    def share(self, groups: dict[int, list[Term]], kind: Kind, op: str) -> None:
+    def share(self, groups: dict[int, list[Term]], op: str) -> None:
         """Make a node of each pair that several sums, or products, have."""
         pairs = Pairs(groups)
         while found := pairs.best():
             (a, b, relative), holders = found
-            new = self.add(Node(kind, op, 0.0, (a, b), (1, relative), 1))
+            new = self.add(Node(op, 0.0, (a, b), (1, relative)))
             self.uses[new] = len(holders)
             pairs.replace((a, b, relative), holders, new)
 
@@ -126,8 +126,8 @@ class Work:
             else:
                 self.products[m] = rest
                 inner.append((m, s))
-        total = self.add(Node(Kind.SUM, "add", 0.0, (), (), 1))
-        scaled = self.add(Node(Kind.PRODUCT, "mul", 0.0, (), (), 1))
+        total = self.add(Node("add", 0.0, (), ()))
+        scaled = self.add(Node("mul", 0.0, (), ()))
         self.sums[total], self.products[scaled] = inner, [(factor, 1), (total, 1)]
         self.uses[total] = self.uses[scaled] = 1
         own[places[0]] = (scaled, 1)
@@ -205,9 +205,9 @@ class _Emission:
     def emit(self, n: int, own: list[Term]) -> Term:
         """The node's own operations."""
         node = self.work.nodes[n]
-        if node.kind is Kind.LEAF:
+        if not own:
             return self.builder.share(node.op, (), node.value), 1
-        if node.kind is Kind.SUM:
+        if node.op == "add":
             return _sum(self.builder, [(i, s * t) for s, (i, t) in [(s, self.index[m]) for m, s in own]])
         if n in self.work.products:
             i, sign = self.index[own[0][0]]

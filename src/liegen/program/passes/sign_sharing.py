@@ -8,20 +8,7 @@ from liegen.program.program import Program, Requirement
 from liegen.program.rewrite import Builder
 
 from .dead_code import dead
-from .orientation import Kind, Node, orientations
-
-_KINDS: Mapping[str, Kind] = {
-    **dict.fromkeys(("input", "const"), Kind.LEAF),
-    **dict.fromkeys(("add", "sub"), Kind.SUM),
-    **dict.fromkeys(("mul", "div"), Kind.PRODUCT),
-    **dict.fromkeys(("sin", "tan", "asin", "atan"), Kind.ODD),
-    **dict.fromkeys(("cos", "abs"), Kind.EVEN),
-    **dict.fromkeys(("sqrt", "exp", "log", "acos", "atan2"), Kind.SIGNED),
-    **dict.fromkeys(("lt", "le"), Kind.COMPARISON),
-    **dict.fromkeys(("and", "or", "not"), Kind.LOGIC),
-    "select": Kind.SELECT,
-}
-
+from .orientation import KINDS, Kind, Node, orientations
 
 def signs(program: Program) -> Program:
     """Share values that differ by their sign, and leave as few negations as possible.
@@ -33,10 +20,10 @@ def signs(program: Program) -> Program:
     bit, but for the sign of zeros. The count never grows: if nothing is gained, the program is returned.
     """
     program = dead(program)
-    nodes, place = signed(program)
+    nodes, given, place = signed(program)
     demanded = [place[i] for indices in program.results for i in indices]
     conditions = [place[r.condition][0] for r in program.requirements]
-    oriented = _Emission(nodes, *orientations(nodes, demanded))
+    oriented = _Emission(nodes, *orientations(nodes, given, demanded))
     results = iter([oriented.get(n, s) for n, s in demanded])
     found = Program(
         program.name,
@@ -53,15 +40,11 @@ def signs(program: Program) -> Program:
     return found if found.operations <= program.operations else program
 
 
-_LEAF = Kind.LEAF
-#: Operation, number, operands and their signs: what makes two nodes equal.
-Key = tuple[str, float, tuple[int, ...], tuple[int, ...]]
-
-
-def signed(program: Program) -> tuple[list[Node], list[tuple[int, int]]]:
-    """The nodes of a program, equal ones shared, and each instruction as (node, sign)."""
+def signed(program: Program) -> tuple[list[Node], list[int], list[tuple[int, int]]]:
+    """The nodes of a program, the sign in which it has each, and each instruction as (node, sign)."""
     nodes: list[Node] = []
-    index: dict[Key, int] = {}
+    given: list[int] = []
+    index: dict[Node, int] = {}
     place: list[tuple[int, int]] = []
     zero = -1
     for op, args, value in program.code:
@@ -69,21 +52,20 @@ def signed(program: Program) -> tuple[list[Node], list[tuple[int, int]]]:
             n, sign = place[args[0]]
             place.append((n, -sign))
             continue
-        kind = _KINDS[op]
-        if kind is _LEAF:
-            ids, signs_, sign = (), (), -1 if value < 0 else 1
-            value = abs(value)
+        if args:
+            name, ids, signs_, sign = _CANONICAL[KINDS[op]](op, [place[a] for a in args], zero)
+            node = Node(name, 0.0, ids, signs_)
         else:
-            known = [place[a] for a in args]
-            op, ids, signs_, sign = _CANONICAL[kind](op, known, zero)
-        key = (op, value, ids, signs_)
-        found = index.setdefault(key, len(nodes))
+            sign = -1 if value < 0 else 1
+            node = Node(op, abs(value), (), ())
+        found = index.setdefault(node, len(nodes))
         if found == len(nodes):
-            nodes.append(Node(kind, op, value, ids, signs_, 1 if kind is _LEAF else sign))
+            nodes.append(node)
+            given.append(sign if args else 1)
             if op == "const" and value == 0.0:
                 zero = found
         place.append((found, sign))
-    return nodes, place
+    return nodes, given, place
 
 
 _SAME, _OPPOSITE = (1, 1), (1, -1)
@@ -160,7 +142,7 @@ class _Emission:
         self.sign: list[int] = []
         self.negative: dict[int, int] = {}
         for node, want in zip(nodes, wanted, strict=True):
-            index, sign = _EMIT[node.kind](self, node, want)
+            index, sign = _EMIT[KINDS[node.op]](self, node, want)
             self.index.append(index)
             self.sign.append(sign)
 
