@@ -53,7 +53,7 @@ def signed(program: Program) -> tuple[list[Node], list[int], list[tuple[int, int
             place.append((n, -sign))
             continue
         if args:
-            name, ids, signs_, sign = _CANONICAL[KINDS[op]](op, [place[a] for a in args], zero)
+            name, ids, signs_, sign = _CANONICAL[op](op, [place[a] for a in args], zero)
             node = Node(name, 0.0, ids, signs_)
         else:
             sign = -1 if value < 0 else 1
@@ -121,10 +121,11 @@ def _logic(op: str, known: _Known, zero: int) -> _Canonical:
     return op, tuple(sorted([a for a, _ in known])), tuple([s for _, s in known]), 1
 
 
-_CANONICAL: Mapping[Kind, Callable[[str, _Known, int], _Canonical]] = {
+_BY_KIND: Mapping[Kind, Callable[[str, _Known, int], _Canonical]] = {
     Kind.SUM: _sum, Kind.PRODUCT: _product, Kind.ODD: _odd, Kind.EVEN: _even, Kind.SIGNED: _as_is,
     Kind.COMPARISON: _comparison, Kind.SELECT: _select, Kind.LOGIC: _logic,
 }  # fmt: skip
+_CANONICAL = {op: _BY_KIND[kind] for op, kind in KINDS.items() if kind in _BY_KIND}
 
 
 class _Emission:
@@ -142,7 +143,7 @@ class _Emission:
         self.sign: list[int] = []
         self.negative: dict[int, int] = {}
         for node, want in zip(nodes, wanted, strict=True):
-            index, sign = _EMIT[KINDS[node.op]](self, node, want)
+            index, sign = _EMIT[node.op](self, node, want)
             self.index.append(index)
             self.sign.append(sign)
 
@@ -225,8 +226,9 @@ class _Emission:
         return self.builder.share("select", args), want
 
 
-_EMIT: Mapping[Kind, Callable[[_Emission, Node, int], tuple[int, int]]] = {
+_EMIT_KIND: Mapping[Kind, Callable[[_Emission, Node, int], tuple[int, int]]] = {
     Kind.LEAF: _Emission.leaf, Kind.SUM: _Emission.sum, Kind.PRODUCT: _Emission.product,
     Kind.ODD: _Emission.odd, Kind.EVEN: _Emission.even, Kind.SIGNED: _Emission.plain,
     Kind.COMPARISON: _Emission.comparison, Kind.SELECT: _Emission.select, Kind.LOGIC: _Emission.logic,
 }  # fmt: skip
+_EMIT = {op: _EMIT_KIND[kind] for op, kind in KINDS.items() if kind in _EMIT_KIND}
