@@ -21,6 +21,9 @@ def contract(program: Program) -> Program:
     for n, own in work.sums.items():
         if len(own) > 2:
             work.sums[n] = sorted(own, key=work.contractible)
+    before = kinds(program)["fused"]
+    if work.fused() <= before:  # without looking further
+        return program
     found = signs(work.emitted())
-    better = kinds(found)["fused"] > kinds(program)["fused"]
+    better = kinds(found)["fused"] > before
     return found if better and found.operations <= program.operations else program

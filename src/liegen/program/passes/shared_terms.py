@@ -86,6 +86,11 @@ class Work:
         """Whether a term of a sum is a product with no other use."""
         return self.nodes[term[0]].op == "mul" and self.uses[term[0]] == 1
 
+    def fused(self) -> int:
+        """For how many pairs of a product and a sum one instruction can do, at most."""
+        products = [(len(own), sum(map(self.contractible, own))) for own in self.sums.values()]
+        return sum([n - (n == terms) for terms, n in products])
+
     def improve(self) -> bool:
         """Share pairs, then take out factors; return whether anything was found."""
         start = len(self.nodes)
