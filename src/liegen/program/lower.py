@@ -88,9 +88,9 @@ def _walk(name: str, function: Any, builder: Operations, total: int) -> list[int
     inputs = [builder.emit("input", (), float(k)) for k in range(total)]
     work: dict[int, int] = {}
     found = [0] * function.nnz_out(0)
+    identity, taken, given = function.instruction_id, function.instruction_input, function.instruction_output
     for k in range(function.n_instructions()):
-        op = _NAMES[function.instruction_id(k)]
-        args, out = function.instruction_input(k), function.instruction_output(k)
+        op, args, out = _NAMES[identity(k)], taken(k), given(k)
         if op == "input":
             work[out[0]] = inputs[args[1]]
         elif op == "const":

@@ -24,12 +24,20 @@ def fold(program: Program) -> Program:
     """
     state = _Folding(Builder())
     builder, place = state.builder, list[int]()
-    for ins in program.code:
-        args = tuple([place[a] for a in ins.args])
-        rule = _RULES.get(ins.op)
-        found = rule(state, ins.op, args) if rule else None
-        place.append(builder.share(ins.op, args, ins.value) if found is None else found)
+    code = builder.code
+    for op, operands, value in program.code:
+        args = tuple([place[a] for a in operands])
+        rule = _RULES.get(op)
+        if op in _BINARY:  # two different numbers, none of them a constant, have no rule
+            a, b = args
+            if a != b and code[a].op != "const" != code[b].op:
+                rule = None
+        found = rule(state, op, args) if rule else None
+        place.append(builder.share(op, args, value) if found is None else found)
     return dead(rebuilt(program, builder.code, place))
+
+
+_BINARY = frozenset({"add", "sub", "mul", "div"})
 
 
 @dataclass(frozen=True)
