@@ -69,9 +69,7 @@ def ladder(local: Linearised) -> Ladder:
     return Ladder(tuple(order), into, sinks, {name: (edge[0], shape[1]) for name, edge, shape in ends})
 
 
-def normal_terms(
-    steps: Ladder, residual: Vector, weigh: Callable[[Matrix], Matrix], frontier: int
-) -> Terms:
+def normal_terms(steps: Ladder, residual: Vector, weigh: Callable[[Matrix], Matrix], frontier: int) -> Terms:
     """The terms; the first ``frontier`` vertices are eliminated as Jacobians, the others by congruence.
 
     ``residual`` is the weighed one, ``weigh`` makes its Jacobians of those of the residual as it was.

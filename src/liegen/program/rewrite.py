@@ -30,6 +30,19 @@ class Builder:
             self.code.append(ins)
         return found
 
+    def moved(self, ins: Instruction, place: Sequence[int]) -> int:
+        """``share`` of an instruction whose operands are in new places; the same value where they are not."""
+        op, args, value = ins
+        now = tuple([place[a] for a in args])
+        if op in COMMUTATIVE and now[0] > now[1]:
+            now = (now[1], now[0])
+        if now != args:
+            ins = Instruction(op, now, value)
+        found = self._index.setdefault(ins, len(self.code))
+        if found == len(self.code):
+            self.code.append(ins)
+        return found
+
     def const(self, value: float) -> int:
         """Return the constant, appended if new; -0.0 is 0.0."""
         return self.share("const", (), value + 0.0)

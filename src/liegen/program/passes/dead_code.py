@@ -13,8 +13,9 @@ def dead(program: Program) -> Program:
         return program
     place = [0] * len(live)
     code: list[Instruction] = []
-    for k, (op, args, value) in enumerate(program.code):
+    for k, ins in enumerate(program.code):
         if live[k]:
             place[k] = len(code)
-            code.append(Instruction(op, tuple([place[a] for a in args]), value))
+            args = tuple([place[a] for a in ins.args])
+            code.append(ins if args == ins.args else Instruction(ins.op, args, ins.value))
     return rebuilt(program, code, place)

@@ -25,15 +25,16 @@ def fold(program: Program) -> Program:
     state = _Folding(Builder())
     builder, place = state.builder, list[int]()
     code = builder.code
-    for op, operands, value in program.code:
-        args = tuple([place[a] for a in operands])
-        rule = _RULES.get(op)
+    for ins in program.code:
+        op, operands, _ = ins
+        found = None
         if op in _BINARY:  # two different numbers, none of them a constant, have no rule
-            a, b = args
-            if a != b and code[a].op != "const" != code[b].op:
-                rule = None
-        found = rule(state, op, args) if rule else None
-        place.append(builder.share(op, args, value) if found is None else found)
+            a, b = place[operands[0]], place[operands[1]]
+            if a == b or code[a].op == "const" or code[b].op == "const":
+                found = _RULES[op](state, op, (a, b))
+        elif op in _RULES:
+            found = _RULES[op](state, op, tuple([place[a] for a in operands]))
+        place.append(builder.moved(ins, place) if found is None else found)
     return dead(rebuilt(program, builder.code, place))
 
 

@@ -10,6 +10,7 @@ from liegen.program.rewrite import Builder
 from .dead_code import dead
 from .orientation import KINDS, Kind, Node, orientations
 
+
 def signs(program: Program) -> Program:
     """Share values that differ by their sign, and leave as few negations as possible.
 

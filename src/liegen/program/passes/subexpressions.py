@@ -10,6 +10,6 @@ def cse(program: Program) -> Program:
     """Share equal instructions; a + b equals b + a. Bit for bit the same values. Idempotent."""
     builder = Builder()
     place: list[int] = []
-    for op, args, value in program.code:
-        place.append(builder.share(op, tuple([place[a] for a in args]), value))
+    for ins in program.code:
+        place.append(builder.moved(ins, place))
     return rebuilt(program, builder.code, place)
