@@ -77,7 +77,7 @@ def _ranked(
     best = float("inf")
     for steps in ladders:
         own = steps.holding([next(left) for _ in steps.blocks])
-        for frontier in range(len(steps.order) + 1):
+        for frontier in steps.frontiers:
             nodes = ledger.taken(partial(_multiplied, start, own, frontier), best)
             if nodes is not None:
                 count = ledger.count(nodes)

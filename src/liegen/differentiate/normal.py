@@ -8,11 +8,12 @@ relative pose c = x^-1 y: there H_cc is H_yy, and H_xx = A^T H_yy A with A = -Ad
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import accumulate, combinations_with_replacement, count
 
-from liegen.algebra.linear import Matrix, Vector, add, eye, matadd, matmul, matvec, transpose, zeros
+from liegen.algebra.linear import Matrix, Vector, add, eye, is_identity, matadd, matmul, matvec, transpose, zeros
 
 from .graph_jacobian import Linearised
 
@@ -38,6 +39,20 @@ class Ladder:
     into: Mapping[int, Mapping[int, Matrix]]
     sinks: Mapping[int, int]
     sources: Mapping[str, tuple[int, int]]
+
+    @property
+    def frontiers(self) -> tuple[int, ...]:
+        """How many vertices may be eliminated before the terms are formed; of equal choices the last one.
+
+        One edge alone leads to a vertex, and it is the identity: then the vertex makes no difference.
+        """
+        ways = Counter(source for below in self.into.values() for source in below)
+
+        def same(vertex: int) -> bool:
+            below = self.into[vertex]
+            return len(below) == 1 and all(ways[u] == 1 and is_identity(B) for u, B in below.items())
+
+        return (*[k for k, vertex in enumerate(self.order) if not same(vertex)], len(self.order))
 
     @property
     def blocks(self) -> tuple[Matrix, ...]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from liegen.program.program import Program
+from liegen.program.rewrite import uncollected
 
 from .contraction import contract
 from .dead_code import dead
@@ -31,6 +32,7 @@ FINAL: tuple[Pass, ...] = (dead, contract, schedule)
 ROUNDS = 4
 
 
+@uncollected()
 def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
     """Run all passes; return the program and a row (name, operations left) per pass that ran.
 
