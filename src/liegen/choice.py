@@ -9,7 +9,7 @@ from itertools import compress
 from operator import not_
 from typing import Any
 
-from liegen.algebra.linear import Matrix, Vector, is_structural
+from liegen.algebra.linear import Matrix, Once, Remembered, Vector, is_structural
 from liegen.differentiate import STRATEGIES, Expressions, Linearised
 from liegen.program import Port
 from liegen.program.lower import lower
@@ -159,7 +159,7 @@ def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
     ledger, counted = opened(name, inputs, blocks)
     left = iter(counted)
     ranking: list[tuple[int, Way, str]] = []
-    best = float("inf")
+    best, once = float("inf"), Remembered({})
     for way in ways:
         outputs = next(left)
         local = replace(
@@ -168,7 +168,7 @@ def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
         )
         found: dict[int, str] = {}
         for strategy in STRATEGIES:
-            nodes = ledger.taken(partial(_multiplied, local, outputs, strategy), best)
+            nodes = ledger.taken(partial(_multiplied, local, outputs, strategy, once), best)
             if nodes is not None:
                 count = ledger.count(nodes)
                 best = min(best, count)
@@ -181,5 +181,5 @@ def _factors(local: Linearised) -> list[Matrix]:
     return [m for chain in local.edges.values() for m in chain]
 
 
-def _multiplied(local: Linearised, outputs: Matrix, strategy: str) -> list[Matrix]:
-    return [outputs, *local.jacobians(STRATEGIES[strategy]).values()]
+def _multiplied(local: Linearised, outputs: Matrix, strategy: str, once: Once) -> list[Matrix]:
+    return [outputs, *local.jacobians(STRATEGIES[strategy], once).values()]

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, Protocol
 
 from .base import Scalar
 
@@ -169,7 +169,7 @@ def matadd(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _nothing(row: Sequence[Scalar]) -> bool:
-    return not any(type(x) is not int or x for x in row)
+    return not any([type(x) is not int or x for x in row])
 
 
 def matscale(k: Scalar, a: Matrix) -> Matrix:
@@ -250,25 +250,49 @@ def is_identity(a: Matrix | Factor) -> bool:
     return bool(a) and a == eye(len(a))
 
 
-def product_from_left(chain: Chain) -> Matrix:
+#: How a function of two matrices is called: ``once(f, a, b)`` is ``f(a, b)``.
+Once = Callable[[Callable[[Matrix, Matrix], Any], Matrix, Matrix], Any]
+
+
+def called(f: Callable[[Matrix, Matrix], Any], a: Matrix, b: Matrix) -> Any:
+    """Return f(a, b)."""
+    return f(a, b)
+
+
+@dataclass(frozen=True, eq=False)
+class Remembered:
+    """Results by function and matrices (the same objects): what was asked before is not computed again."""
+
+    known: dict[tuple[Any, int, int], tuple[Any, Matrix, Matrix]]
+
+    def __call__(self, f: Callable[[Matrix, Matrix], Any], a: Matrix, b: Matrix) -> Any:
+        """Return f(a, b)."""
+        key = f, id(a), id(b)
+        found = self.known.get(key)
+        if found is None:
+            found = self.known[key] = f(a, b), a, b  # both are held, so that no identity comes again
+        return found[0]
+
+
+def product_from_left(chain: Chain, once: Once = called) -> Matrix:
     """Multiply a chain out from the left."""
-    return reduce(matmul, plain(chain))
+    return reduce(partial(once, matmul), plain(chain))
 
 
-def product_from_right(chain: Chain) -> Matrix:
+def product_from_right(chain: Chain, once: Once = called) -> Matrix:
     """Multiply a chain out from the right."""
-    return reduce(lambda total, factor: matmul(factor, total), reversed(plain(chain)))
+    return reduce(lambda total, factor: once(matmul, factor, total), reversed(plain(chain)))
 
 
-def product(chain: Chain) -> Matrix:
+def product(chain: Chain, once: Once = called) -> Matrix:
     """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
     factors = list(plain(chain))
-    costs = [multiply_cost(a, b) for a, b in pairwise(factors)]
+    costs = [once(multiply_cost, a, b) for a, b in pairwise(factors)]
     while costs:
         k = costs.index(min(costs))
-        factors[k : k + 2] = [matmul(factors[k], factors[k + 1])]
+        factors[k : k + 2] = [once(matmul, factors[k], factors[k + 1])]
         del costs[k]
         for i in (k - 1, k):
             if 0 <= i < len(costs):
-                costs[i] = multiply_cost(factors[i], factors[i + 1])
+                costs[i] = once(multiply_cost, factors[i], factors[i + 1])
     return factors[0]

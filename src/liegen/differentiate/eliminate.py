@@ -16,6 +16,8 @@ from liegen.algebra.linear import (
     Chain,
     Matrix,
     Numbers,
+    Once,
+    Remembered,
     matadd,
     product,
     product_from_left,
@@ -34,7 +36,7 @@ class Strategy:
     """In which order inner vertices are eliminated, and how chains are multiplied."""
 
     order: Order
-    multiply: Callable[[Numbers], Matrix]
+    multiply: Callable[[Numbers, Once], Matrix]
     unshared: bool = False  # whether a chain that several products use is multiplied out in each of them
 
 
@@ -83,8 +85,9 @@ STRATEGIES: Mapping[str, Strategy] = {
 class Elimination:
     """A graph from which vertices are taken one by one."""
 
-    def __init__(self, edges: Edges, strategy: Strategy) -> None:
+    def __init__(self, edges: Edges, strategy: Strategy, once: Once) -> None:
         self.strategy = strategy
+        self.once = once
         self.into: dict[int, Ends] = {}
         self.out: dict[int, Ends] = {}
         self.rows: dict[int, int] = {}  # of all edges out of a vertex
@@ -96,8 +99,7 @@ class Elimination:
         """Add a path from a to b: parallel edges are summed."""
         present = self.out.get(a, {}).get(b)
         if present is not None:
-            multiply = self.strategy.multiply
-            chain = (matadd(multiply(present), multiply(chain)),)
+            chain = (self.once(matadd, self.multiplied(present), self.multiplied(chain)),)
         else:
             self.rows[a] = self.rows.get(a, 0) + _rows(chain)
             self.columns[b] = self.columns.get(b, 0) + _columns(chain)
@@ -126,7 +128,11 @@ class Elimination:
     def shared(self, chain: Numbers, users: int) -> Numbers:
         """Multiply out what several products will use."""
         apart = users < 2 or self.strategy.unshared
-        return chain if apart else (self.strategy.multiply(chain),)
+        return chain if apart else (self.multiplied(chain),)
+
+    def multiplied(self, chain: Numbers) -> Matrix:
+        """The product of a chain."""
+        return self.strategy.multiply(chain, self.once)
 
 
 def _rows(chain: Numbers) -> int:
@@ -137,12 +143,17 @@ def _columns(chain: Numbers) -> int:
     return len(chain[-1][0])
 
 
-def eliminate(edges: Edges, inner: Sequence[int], strategy: Strategy) -> dict[tuple[int, int], Matrix]:
-    """Jacobians of the remaining vertices: {(from, to): matrix}."""
-    graph = Elimination(edges, strategy)
+def eliminate(
+    edges: Edges, inner: Sequence[int], strategy: Strategy, once: Once | None = None
+) -> dict[tuple[int, int], Matrix]:
+    """Jacobians of the remaining vertices: {(from, to): matrix}.
+
+    With the same ``once`` strategies share the products that they have in common.
+    """
+    graph = Elimination(edges, strategy, once or Remembered({}))
     for v in strategy.order(graph, inner):
         graph.remove(v)
-    return {(a, b): strategy.multiply(chain) for a, ends in graph.out.items() for b, chain in ends.items()}
+    return {(a, b): graph.multiplied(chain) for a, ends in graph.out.items() for b, chain in ends.items()}
 
 
 def accumulate(edges: dict[tuple[int, int], Chain], edge: tuple[int, int], chain: Chain) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from liegen.algebra.casadi_backend import scalar
-from liegen.algebra.linear import Chain, Matrix, Numbers, eye, plain, stacked, transpose, zeros
+from liegen.algebra.linear import Chain, Matrix, Numbers, Once, eye, plain, stacked, transpose, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
@@ -68,9 +68,9 @@ class Linearised:
     inner: tuple[int, ...]
     wanted: Mapping[tuple[str, str], tuple[tuple[tuple[int, int], tuple[int, int]], ...]]
 
-    def jacobians(self, strategy: Strategy) -> dict[tuple[str, str], Matrix]:
-        """Jacobian of each output by each variable, {(output, variable): matrix}."""
-        products = eliminate(self.edges, self.inner, strategy)
+    def jacobians(self, strategy: Strategy, once: Once | None = None) -> dict[tuple[str, str], Matrix]:
+        """Jacobian of each output by each variable, {(output, variable): matrix}; see :func:`eliminate`."""
+        products = eliminate(self.edges, self.inner, strategy, once)
         return {
             key: stacked(*[products.get(edge) or zeros(*shape) for edge, shape in parts])
             for key, parts in self.wanted.items()
