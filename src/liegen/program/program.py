@@ -161,16 +161,19 @@ class Program:
 
     def operations_of(self, names: Collection[str]) -> int:
         """Number of arithmetic instructions that the outputs with these names need."""
-        needed = {
-            i
-            for p, indices in zip(self.outputs, self.results, strict=True)
-            if p.name in names
-            for i in indices
-        }
-        for k in range(len(self.code) - 1, -1, -1):
-            if k in needed:
-                needed.update(self.code[k].args)
-        return sum(self.code[k].op not in FREE for k in needed)
+        needed = bytearray(len(self.code))
+        for port, indices in zip(self.outputs, self.results, strict=True):
+            if port.name in names:
+                for i in indices:
+                    needed[i] = 1
+        count = 0
+        for k in range(needed.rfind(1), -1, -1):
+            if needed[k]:
+                op, args, _ = self.code[k]
+                count += op not in FREE
+                for a in args:
+                    needed[a] = 1
+        return count
 
     def digest(self) -> str:
         """SHA-256 of the program's text, equal on every machine."""
