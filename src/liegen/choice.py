@@ -64,11 +64,17 @@ class Counted:
 
 @dataclass
 class Ledger:
-    """All nodes so far: each by its operation, its operands, and whether it costs nothing."""
+    """All nodes so far: each by its operation, its operands, and whether it costs nothing.
+
+    The first ``begun`` ones are there from the start; ``least`` of the others took whoever took the fewest,
+    no more than ``most`` nodes are made.
+    """
 
     index: dict[Node, int]
     operands: list[tuple[int, ...]]
     leaves: list[bool]
+    begun: int
+    least: float = float("inf")
     most: float = float("inf")
 
     def share(self, node: Node) -> int:
@@ -103,16 +109,21 @@ class Ledger:
         """Operations among these nodes."""
         return sum(compress(map(not_, self.leaves), needed))
 
-    def taken(self, make: Callable[[], Iterable[Matrix]], best: float) -> bytes | None:
+    def taken(self, make: Callable[[], Iterable[Matrix]]) -> bytes | None:
         """The nodes that the matrices need which ``make`` multiplies out.
 
-        None where that takes far more operations than ``best``: it is given up.
+        None where that takes far more products than the best did: it is given up.
         """
-        self.most = len(self.operands) + SLACK * best
+        self.most = len(self.operands) + SLACK * self.least
         try:
-            return self.needed(make())
+            nodes = self.needed(make())
         except TooManyError:
             return None
+        products = nodes.count(1, self.begun)
+        if products > SLACK * self.least:
+            return None
+        self.least = min(self.least, products)
+        return nodes
 
 
 def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) -> tuple[Ledger, list[Matrix]]:
@@ -125,6 +136,7 @@ def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) ->
         {node: k for k, node in enumerate(nodes)},
         [node.args for node in nodes],
         [not node.args for node in nodes],
+        len(nodes),
     )
     found = iter([Counted(ledger, *place[i]) for i in program.results[0]])
     return ledger, [
@@ -159,7 +171,7 @@ def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
     ledger, counted = opened(name, inputs, blocks)
     left = iter(counted)
     ranking: list[tuple[int, Way, str]] = []
-    best, once = float("inf"), Remembered({})
+    once = Remembered({})
     for way in ways:
         outputs = next(left)
         local = replace(
@@ -168,11 +180,9 @@ def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
         )
         found: dict[int, str] = {}
         for strategy in STRATEGIES:
-            nodes = ledger.taken(partial(_multiplied, local, outputs, strategy, once), best)
+            nodes = ledger.taken(partial(_multiplied, local, outputs, strategy, once))
             if nodes is not None:
-                count = ledger.count(nodes)
-                best = min(best, count)
-                found.setdefault(count, strategy)
+                found.setdefault(ledger.count(nodes), strategy)
         ranking += [(count, way, strategy) for count, strategy in sorted(found.items())]
     return ranking
 

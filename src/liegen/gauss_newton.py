@@ -74,15 +74,12 @@ def _ranked(
     left = iter(counted)
     start = [next(left) for _ in begun]
     found: dict[bytes, tuple[int, Ladder, int]] = {}
-    best = float("inf")
     for steps in ladders:
         own = steps.holding([next(left) for _ in steps.blocks])
         for frontier in steps.frontiers:
-            nodes = ledger.taken(partial(_multiplied, start, own, frontier), best)
+            nodes = ledger.taken(partial(_multiplied, start, own, frontier))
             if nodes is not None:
-                count = ledger.count(nodes)
-                best = min(best, count)
-                found[nodes] = (count, steps, frontier)
+                found[nodes] = (ledger.count(nodes), steps, frontier)
     return sorted(found.values(), key=lambda choice: choice[0])
 
 

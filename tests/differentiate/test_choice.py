@@ -7,7 +7,7 @@ import pytest
 
 from liegen import R1, R3, SE3, SO3, factor, function, sin, stack
 from liegen.bench import formulas
-from liegen.choice import ranked
+from liegen.choice import Way, ranked
 from liegen.derive import derive, lowered
 from liegen.differentiate import STRATEGIES, expressions, fused, jacobians, linearised
 from liegen.library import bearing_se3_gtsam, between_se3, between_so3, projection_cal3_ds2
@@ -40,9 +40,9 @@ def test_counting_foretells_what_an_order_takes(function):
     graph = function.plain
     values = expressions(graph)
     local = linearised(graph, values)[0]
-    order = ranked(graph, values, local)
-    assert [count for count, _ in order] == sorted(count for count, _ in order)
-    for count, name in order[:3]:
+    order = ranked([Way(graph, values, local)])
+    assert [count for count, _, _ in order] == sorted(count for count, _, _ in order)
+    for count, _, name in order[:3]:
         program = dead(signs(fold(cse(lowered(graph, values, local.jacobians(STRATEGIES[name]))))))
         # folding knows a few identities more than counting does
         assert settled(program) <= count <= 1.04 * settled(program) + 2
@@ -53,7 +53,7 @@ def test_the_best_order_is_no_worse_than_any(function):
     graph = function.plain
     values = expressions(graph)
     local = linearised(graph, values)[0]
-    best = ranked(graph, values, local)[0][0]
+    best = ranked([Way(graph, values, local)])[0][0]
     for strategy in STRATEGIES.values():
         assert best <= 1.04 * settled(signs(cse(lowered(graph, values, local.jacobians(strategy))))) + 2
 
