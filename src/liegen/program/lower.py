@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from liegen.errors import DefinitionError
@@ -86,12 +87,18 @@ def _function(name: str, symbols: list[Any], wanted: list[Any]) -> Any:
 def _walk(name: str, function: Any, builder: Operations, total: int) -> list[int]:
     """Translate every instruction; CasADi's work vector is reused, so a slot only holds its latest value."""
     inputs = [builder.emit("input", (), float(k)) for k in range(total)]
+    methods = _methods(builder)
     work: dict[int, int] = {}
     found = [0] * function.nnz_out(0)
     identity, taken, given = function.instruction_id, function.instruction_input, function.instruction_output
     for k in range(function.n_instructions()):
         op, args, out = _NAMES[identity(k)], taken(k), given(k)
-        if op == "input":
+        if op in methods:
+            try:
+                work[out[0]] = methods[op](*[work[a] for a in args])
+            except LookupError as problem:
+                raise _refused(name, problem.args[0]) from problem
+        elif op == "input":
             work[out[0]] = inputs[args[1]]
         elif op == "const":
             work[out[0]] = builder.const(float(function.instruction_constant(k)))
@@ -100,20 +107,18 @@ def _walk(name: str, function: Any, builder: Operations, total: int) -> list[int
         elif op in ("assign", "lift"):
             work[out[0]] = work[args[0]]
         else:
-            work[out[0]] = _lowered(name, op, builder, [work[a] for a in args])
+            raise _refused(name, f"the operation {op!r}")
     return found
 
 
-def _lowered(name: str, op: str, build: Operations, args: list[int]) -> int:
-    """The value of one operation; its operands are numbers or conditions."""
-    try:
-        if op in _FUNCTIONS:
-            return build.unary(_FUNCTIONS[op], args[0])
-        if op in _METHODS:
-            return getattr(build, _METHODS[op])(*args)
-        raise LookupError(f"the operation {op!r}")
-    except LookupError as problem:
-        raise DefinitionError(
-            f"{name}: {problem.args[0]} cannot be generated; write it with + - * /, sqrt, sin, cos, tan, "
-            "asin, acos, atan, atan2, exp, log, fabs, fmin, fmax and if_else"
-        ) from problem
+def _methods(build: Operations) -> dict[str, Callable[..., int]]:
+    """What makes instructions of each of CasADi's operations; their operands are numbers or conditions."""
+    unary = {op: partial(build.unary, own) for op, own in _FUNCTIONS.items()}
+    return {**unary, **{op: getattr(build, own) for op, own in _METHODS.items()}}
+
+
+def _refused(name: str, what: str) -> DefinitionError:
+    return DefinitionError(
+        f"{name}: {what} cannot be generated; write it with + - * /, sqrt, sin, cos, tan, asin, acos, atan, "
+        "atan2, exp, log, fabs, fmin, fmax and if_else"
+    )
