@@ -257,12 +257,15 @@ class _Search:
         for k, both in enumerate(self.both):
             if both:
                 final[k] = self.natural[k] or self.choice[k]
-        for k in range(len(self.nodes) - 1, -1, -1):
+        open_ = [d == 0 and len(users) == 1 for d, users in zip(self.d, self.users, strict=True)]
+        for k, constant in enumerate(self.constant):
+            if constant:
+                open_[k] = False
+        for k in sorted({self.users[a][0] for a, free in enumerate(open_) if free}, reverse=True):
             node = self.nodes[k]
-            free = [self.d[a] == 0 and not self.shared[a] and not self.constant[a] for a in node.args]
-            if any(free):
-                fixed = [not self.constant[a] and not free_ for a, free_ in zip(node.args, free, strict=True)]
-                _assign(node, final, free, fixed, final[k])
+            free = [open_[a] for a in node.args]
+            fixed = [not self.constant[a] and not open_[a] for a in node.args]
+            _assign(node, final, free, fixed, final[k])
         return final[: self.count]
 
 
