@@ -13,7 +13,7 @@ from liegen.algebra.linear import Matrix, Once, Remembered, Vector, is_structura
 from liegen.differentiate import STRATEGIES, Expressions, Linearised
 from liegen.program import Port
 from liegen.program.lower import lower
-from liegen.program.passes.orientation import Node
+from liegen.program.passes.orientation import Fields
 from liegen.program.passes.sign_sharing import signed
 from liegen.trace import Graph
 
@@ -37,7 +37,7 @@ class Counted:
         ledger = self.ledger
         two = other if isinstance(other, Counted) else ledger.scalar(other)
         a, b = self.node, two.node
-        node = ledger.share(Node("mul", 0.0, (a, b) if a < b else (b, a), (1, 1)))
+        node = ledger.share(("mul", 0.0, (a, b) if a < b else (b, a), (1, 1)))
         return Counted(ledger, node, self.sign * two.sign)
 
     __rmul__ = __mul__
@@ -47,7 +47,7 @@ class Counted:
         one, two = self, other if isinstance(other, Counted) else ledger.scalar(other)
         if one.node > two.node:
             one, two = two, one
-        node = ledger.share(Node("add", 0.0, (one.node, two.node), (1, one.sign * two.sign)))
+        node = ledger.share(("add", 0.0, (one.node, two.node), (1, one.sign * two.sign)))
         return Counted(ledger, node, one.sign)
 
     __radd__ = __add__
@@ -70,28 +70,28 @@ class Ledger:
     no more than ``most`` nodes are made.
     """
 
-    index: dict[Node, int]
+    index: dict[Fields, int]
     operands: list[tuple[int, ...]]
     leaves: list[bool]
     begun: int
     least: float = float("inf")
     most: float = float("inf")
 
-    def share(self, node: Node) -> int:
+    def share(self, node: Fields) -> int:
         """The place of a node, counted if it is new."""
         found = self.index.setdefault(node, len(self.operands))
         if found == len(self.operands):
             if found > self.most:
                 raise TooManyError
-            self.operands.append(node.args)
-            self.leaves.append(not node.args)
+            self.operands.append(node[2])
+            self.leaves.append(not node[2])
         return found
 
     def scalar(self, x: Any) -> Counted:
         """A number as a node."""
         if isinstance(x, Counted):
             return x
-        return Counted(self, self.share(Node("const", abs(float(x)), (), ())), -1 if x < 0 else 1)
+        return Counted(self, self.share(("const", abs(float(x)), (), ())), -1 if x < 0 else 1)
 
     def needed(self, blocks: Iterable[Matrix]) -> bytes:
         """For each node up to the last one that the entries of these matrices need 1 or 0."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 
-from .program import COMMUTATIVE, Instruction, Program, Requirement
+from .program import COMMUTATIVE, Instruction, Program, Requirement, instruction
 
 
 @contextmanager
@@ -35,14 +35,14 @@ class Builder:
 
     def emit(self, op: str, args: tuple[int, ...] = (), value: float = 0.0) -> int:
         """Append an instruction, return its index."""
-        self.code.append(Instruction(op, args, value))
+        self.code.append(instruction((op, args, value)))
         return len(self.code) - 1
 
     def share(self, op: str, args: tuple[int, ...] = (), value: float = 0.0) -> int:
         """Return the instruction equal to this one (commutative operands in any order), appended if new."""
         if op in COMMUTATIVE and args[0] > args[1]:
             args = (args[1], args[0])
-        ins = Instruction(op, args, value)
+        ins = instruction((op, args, value))
         found = self._index.setdefault(ins, len(self.code))
         if found == len(self.code):
             self.code.append(ins)
@@ -55,7 +55,7 @@ class Builder:
         if op in COMMUTATIVE and now[0] > now[1]:
             now = (now[1], now[0])
         if now != args:
-            ins = Instruction(op, now, value)
+            ins = instruction((op, now, value))
         found = self._index.setdefault(ins, len(self.code))
         if found == len(self.code):
             self.code.append(ins)

@@ -26,9 +26,11 @@ Pass = Callable[[Program], Program]
 
 #: Run in turn, again and again until nothing changes.
 PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
+#: What follows in the other rounds: folding shares equal operations too.
+AGAIN = PASSES[1:]
 #: Run once at the end.
 FINAL: tuple[Pass, ...] = (dead, contract, schedule)
-#: Rounds of ``PASSES`` at most.
+#: Rounds at most.
 ROUNDS = 4
 
 
@@ -42,13 +44,13 @@ def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
     rows = [("lower", program.operations)]
     version = 0  # of the program; the one that each pass returned
     returned: dict[str, int] = {}
-    for step in (*PASSES * ROUNDS, *FINAL):
+    for step in (*PASSES, *AGAIN * (ROUNDS - 1), *FINAL):
         name = step.__name__
         if returned.get(name) == version:
             continue
-        found = step(program)
+        found, operations = step(program), rows[-1][1]
         if found != program:
-            program, version = found.validate(), version + 1
+            program, version, operations = found.validate(), version + 1, found.operations
         returned[name] = version
-        rows.append((name, program.operations))
+        rows.append((name, operations))
     return program, tuple(rows)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from liegen.program.program import Instruction, Program
+from liegen.program.program import Instruction, Program, instruction
 from liegen.program.rewrite import needed, rebuilt
 
 
@@ -17,5 +17,5 @@ def dead(program: Program) -> Program:
         if live[k]:
             place[k] = len(code)
             args = tuple([place[a] for a in ins.args])
-            code.append(ins if args == ins.args else Instruction(ins.op, args, ins.value))
+            code.append(ins if args == ins.args else instruction((ins.op, args, ins.value)))
     return rebuilt(program, code, place)

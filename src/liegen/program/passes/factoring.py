@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from liegen.program.program import Instruction, Program
+from liegen.program.program import Instruction, Program, instruction
 from liegen.program.rewrite import rebuilt, use_counts
 
 from .dead_code import dead
@@ -32,7 +32,7 @@ def factor(program: Program) -> Program:
     def keep(k: int) -> int:
         op, args, value = ins = program.code[k]
         now = tuple([place[a] for a in args])
-        code.append(ins if now == args else Instruction(op, now, value))
+        code.append(ins if now == args else instruction((op, now, value)))
         uses.append(before[k])
         return len(code) - 1
 

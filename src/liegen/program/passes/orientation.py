@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
+from functools import partial
 from heapq import heappop, heappush
 from typing import NamedTuple
 
@@ -62,6 +63,12 @@ class Node(NamedTuple):
     def kind(self) -> Kind:
         """How its sign depends on those of its operands."""
         return KINDS[self.op]
+
+
+#: The fields of a node, which equal it.
+Fields = tuple[str, float, tuple[int, ...], tuple[int, ...]]
+#: A node of its fields, in two thirds of the time.
+node_of: Callable[[Fields], Node] = partial(tuple.__new__, Node)
 
 
 def orientations(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from heapq import heappop, heappush
 
-from liegen.program.program import FREE, Instruction, Program
+from liegen.program.program import FREE, Instruction, Program, instruction
 from liegen.program.rewrite import needed, rebuilt, roots
 
 
@@ -58,7 +58,7 @@ def _placed(program: Program, order: Sequence[int]) -> Program:
             if place[a] < 0:
                 put(a)  # only inputs and constants are not there yet
         place[k] = len(code)
-        code.append(Instruction(op, tuple([place[a] for a in args]), value))
+        code.append(instruction((op, tuple([place[a] for a in args]), value)))
 
     for k in (*order, *roots(program)):
         if place[k] < 0:

@@ -8,7 +8,7 @@ from liegen.program.program import Program, Requirement
 from liegen.program.rewrite import Builder
 
 from .dead_code import dead
-from .orientation import KINDS, Kind, Node, orientations
+from .orientation import KINDS, Kind, Node, node_of, orientations
 
 
 def signs(program: Program) -> Program:
@@ -55,7 +55,7 @@ def signed(program: Program) -> tuple[list[Node], list[int], list[tuple[int, int
             continue
         if args:
             name, ids, signs_, sign = _CANONICAL[op](op, [place[a] for a in args], zero)
-            node = Node(name, 0.0, ids, signs_)
+            node = node_of((name, 0.0, ids, signs_))
         else:
             sign = -1 if value < 0 else 1
             node = Node(op, abs(value), (), ())
