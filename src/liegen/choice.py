@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import compress
 from operator import not_
 from typing import Any
 
+from liegen.algebra import Scalar
 from liegen.algebra.linear import Matrix, Once, Remembered, Vector, is_structural
 from liegen.differentiate import STRATEGIES, Expressions, Linearised
-from liegen.program import Port
-from liegen.program.lower import lower
+from liegen.program import Program
 from liegen.program.passes.orientation import Fields
 from liegen.program.passes.sign_sharing import signed
 from liegen.trace import Graph
@@ -126,11 +126,13 @@ class Ledger:
         return nodes
 
 
-def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) -> tuple[Ledger, list[Matrix]]:
-    """The ledger of all entries of matrices on SX, and these matrices on counted scalars."""
-    entries = [x for m in blocks for row in m for x in row if not is_structural(x)]
-    ports = [(Port(argument, (len(coords),)), coords) for argument, coords in inputs.items()]
-    program = lower(name, ports, [(Port("entries", (len(entries),)), entries)])
+def entries(blocks: Iterable[Matrix]) -> list[Scalar]:
+    """The entries of matrices on SX that are no structure: what :func:`opened` needs beside a program."""
+    return [x for m in blocks for row in m for x in row if not is_structural(x)]
+
+
+def opened(program: Program, blocks: Iterable[Matrix]) -> tuple[Ledger, list[Matrix]]:
+    """The ledger of a program that has the entries of ``blocks`` beside it; these on counted scalars."""
     nodes, _, place = signed(program)
     ledger = Ledger(
         {node: k for k, node in enumerate(nodes)},
@@ -138,7 +140,7 @@ def opened(name: str, inputs: Mapping[str, Vector], blocks: Sequence[Matrix]) ->
         [not node.args for node in nodes],
         len(nodes),
     )
-    found = iter([Counted(ledger, *place[i]) for i in program.results[0]])
+    found = iter([Counted(ledger, *place[i]) for i in program.results[-1]])
     return ledger, [
         tuple([tuple([x if is_structural(x) else next(found) for x in row]) for row in m]) for m in blocks
     ]
@@ -160,15 +162,19 @@ class Way:
         return (*[x for node in nodes for x in self.values.scalars[id(node)]], *conditions)
 
 
-def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
+    @property
+    def blocks(self) -> list[Matrix]:
+        """The outputs, and all factors of the local blocks."""
+        return [(self.outputs,), *[m for chain in self.local.edges.values() for m in chain]]
+
+
+def ranked(ways: Sequence[Way], program: Program) -> list[tuple[int, Way, str]]:
     """For each way the strategies with the operations that they take (up to negations), fewest first.
 
-    All ways are on the same symbols. Left out are strategies that give the same count as one before, and
-    those that take far more.
+    All ways are on the same symbols; ``program`` has the entries of their blocks beside it. Left out are
+    strategies that give the same count as one before, and those that take far more.
     """
-    name, inputs = ways[0].graph.name, ways[0].values.inputs
-    blocks = [m for w in ways for m in ((w.outputs,), *_factors(w.local))]
-    ledger, counted = opened(name, inputs, blocks)
+    ledger, counted = opened(program, [m for way in ways for m in way.blocks])
     left = iter(counted)
     ranking: list[tuple[int, Way, str]] = []
     once = Remembered({})
@@ -185,10 +191,6 @@ def ranked(ways: Sequence[Way]) -> list[tuple[int, Way, str]]:
                 found.setdefault(ledger.count(nodes), strategy)
         ranking += [(count, way, strategy) for count, strategy in sorted(found.items())]
     return ranking
-
-
-def _factors(local: Linearised) -> list[Matrix]:
-    return [m for chain in local.edges.values() for m in chain]
 
 
 def _multiplied(local: Linearised, outputs: Matrix, strategy: str, once: Once) -> list[Matrix]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import combinations_with_replacement
 
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Matrix, Vector, dot, eye
-from liegen.choice import opened
+from liegen.choice import Ledger, entries, opened
 from liegen.derive import lowered_outputs, weight_symbols
 from liegen.differentiate import Ladder, Terms, expressions, ladder, linearised, normal_terms
 from liegen.kernel import Kernel, Output, PassCount
@@ -38,7 +38,9 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
     cost = weighting.cost(given, r) if weighting else 0.5 * dot(r, r)
     weighted = weighting.weighted(given, r) if weighting else Weighted(r, eye(len(r)), r, 0)
     ladders = [ladder(local) for local in linearised(graph, values)]
-    ranking = _ranked(graph.name, {**values.inputs, **given}, cost, weighted, ladders)
+    blocks = [((cost,),), *weighted.blocks, *[m for steps in ladders for m in steps.blocks]]
+    begun = lowered_outputs(graph, values, given, (), entries(blocks))
+    ranking = _ranked(*opened(begun, blocks), ladders)
     least = min(count for count, _, _ in ranking)
     programs = [
         lowered_outputs(graph, values, given, _ports(cost, _terms(steps, weighted, frontier)))
@@ -62,30 +64,29 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
 
 
 def _ranked(
-    name: str, inputs: Mapping[str, Vector], cost: Scalar, weighted: Weighted, ladders: Sequence[Ladder]
+    ledger: Ledger, counted: Sequence[Matrix], ladders: Sequence[Ladder]
 ) -> list[tuple[int, Ladder, int]]:
     """The local blocks, as they are or without what cancels, and the frontier, with what these take.
 
     Operations up to negations, fewest first. Of those that need the same ones there is one, and none of those
     that take far more.
     """
-    begun = [((cost,),), *weighted.blocks]
-    ledger, counted = opened(name, inputs, [*begun, *[m for steps in ladders for m in steps.blocks]])
-    left = iter(counted)
-    start = [next(left) for _ in begun]
+    (cost, *weighted), left = counted[:5], iter(counted[5:])
     found: dict[bytes, tuple[int, Ladder, int]] = {}
     for steps in ladders:
         own = steps.holding([next(left) for _ in steps.blocks])
         for frontier in steps.frontiers:
-            nodes = ledger.taken(partial(_multiplied, start, own, frontier))
+            nodes = ledger.taken(partial(_multiplied, cost, weighted, own, frontier))
             if nodes is not None:
                 found[nodes] = (ledger.count(nodes), steps, frontier)
     return sorted(found.values(), key=lambda choice: choice[0])
 
 
-def _multiplied(start: Sequence[Matrix], steps: Ladder, frontier: int) -> list[Matrix]:
-    terms = _terms(steps, Weighted.of(start[1:]), frontier)
-    return [start[0], *[(g,) for g in terms.g.values()], *terms.H.values()]
+def _multiplied(
+    cost: Matrix, weighted: Sequence[Matrix], steps: Ladder, frontier: int
+) -> list[Matrix]:
+    terms = _terms(steps, Weighted.of(weighted), frontier)
+    return [cost, *[(g,) for g in terms.g.values()], *terms.H.values()]
 
 
 def _terms(steps: Ladder, weighted: Weighted, frontier: int) -> Terms:

@@ -97,14 +97,14 @@ class Elimination:
 
     def add(self, a: int, b: int, chain: Numbers) -> None:
         """Add a path from a to b: parallel edges are summed."""
-        present = self.out.get(a, {}).get(b)
+        ends = self.out.setdefault(a, {})
+        present = ends.get(b)
         if present is not None:
             chain = (self.once(matadd, self.multiplied(present), self.multiplied(chain)),)
         else:
             self.rows[a] = self.rows.get(a, 0) + _rows(chain)
             self.columns[b] = self.columns.get(b, 0) + _columns(chain)
-        self.into.setdefault(b, {})[a] = chain
-        self.out.setdefault(a, {})[b] = chain
+        self.into.setdefault(b, {})[a] = ends[b] = chain
 
     def cost(self, v: int) -> int:
         """About how many scalar products the elimination of v takes, dense blocks taken for granted."""

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import Any
 
 from liegen.errors import DefinitionError
@@ -24,6 +26,8 @@ _METHODS: Mapping[str, str] = {
     **{op: op for op in ("fmin", "fmax", "if_else_zero", "lt", "le", "eq", "ne")},
     **{"pow": "power", "constpow": "power", "not": "negation", "and": "conjunction", "or": "disjunction"},
 }
+#: The name of the output that is beside a program.
+BESIDE = ""
 #: CasADi's functions of one number -> the program's.
 _FUNCTIONS: Mapping[str, str] = {
     "fabs": "abs",
@@ -36,12 +40,15 @@ def lower(
     inputs: Sequence[tuple[Port, Sequence[Any]]],
     outputs: Sequence[tuple[Port, Sequence[Any]]],
     requirements: Sequence[tuple[Any, str]] = (),
+    beside: Sequence[Any] = (),
 ) -> Program:
     """Lower SX expressions to a program that computes the same numbers.
 
     ``inputs`` pairs each port with its SX symbols, ``outputs`` each port with its entries, flat and
     row-major: SX scalars, or Python numbers for what is known (0, 1, -1). ``requirements`` pairs an SX
-    condition with its message. At a tie (``fmin(x, x)``, ``fabs(0)``) derivatives are CasADi's: 1/2 each, 0.
+    condition with its message. What is ``beside`` becomes a last output :data:`BESIDE`, without which the program
+    is what it would be (:func:`alone`). At a tie (``fmin(x, x)``, ``fabs(0)``) derivatives are CasADi's: 1/2
+    each, 0.
 
     Raises DefinitionError for an operation that has no counterpart in generated code, for an expression
     that depends on a symbol that is no input, and for a port whose size is not its number of entries.
@@ -51,26 +58,33 @@ def lower(
             raise DefinitionError(
                 f"{name}: {port.name} has {len(entries)} entries; its shape {port.shape} needs {port.size}"
             )
-    wanted = [*(x for _, entries in outputs for x in entries), *(condition for condition, _ in requirements)]
+    conditions = [condition for condition, _ in requirements]
+    wanted = [*[x for _, entries in outputs for x in entries], *conditions, *beside]
     function = _function(name, [x for _, symbols in inputs for x in symbols], wanted)
     builder = Operations()
-    found = _walk(name, function, builder, sum(port.size for port, _ in inputs))
-    total = sum(port.size for port, _ in outputs)
-    flat = [builder.number(i) for i in found[:total]]
-    conditions = [builder.condition(i) for i in found[total:]]
-    results: list[tuple[int, ...]] = []
-    for port, _ in outputs:
-        results.append(tuple(flat[: port.size]))
-        flat = flat[port.size :]
+    found = iter(_walk(name, function, builder, sum([port.size for port, _ in inputs])))
+    results = [tuple([builder.number(i) for i in islice(found, port.size)]) for port, _ in outputs]
+    required = [Requirement(builder.condition(next(found)), message) for _, message in requirements]
+    ports = [port for port, _ in outputs]
+    if beside:
+        ports.append(Port(BESIDE, (len(beside),)))
+        results.append(tuple([builder.number(i) for i in found]))
     lowered = Program(
         name,
-        tuple(port for port, _ in inputs),
-        tuple(port for port, _ in outputs),
+        tuple([port for port, _ in inputs]),
+        tuple(ports),
         tuple(builder.code),
         tuple(results),
-        tuple(Requirement(c, message) for c, (_, message) in zip(conditions, requirements, strict=True)),
+        tuple(required),
     )
     return dead(lowered).validate()  # CasADi's half selects, merged into whole ones, are left over
+
+
+def alone(program: Program) -> Program:
+    """A lowered program without what is beside it."""
+    if program.outputs[-1].name != BESIDE:
+        return program
+    return dead(replace(program, outputs=program.outputs[:-1], results=program.results[:-1]))
 
 
 def _function(name: str, symbols: list[Any], wanted: list[Any]) -> Any:

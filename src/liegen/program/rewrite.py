@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 
 from .program import COMMUTATIVE, Instruction, Program, Requirement, instruction
 
@@ -73,11 +72,13 @@ class Builder:
 
 def rebuilt(program: Program, code: Sequence[Instruction], place: Sequence[int]) -> Program:
     """Return ``program`` on new code; ``place[i]`` is where the value of the old instruction i now is."""
-    return replace(
-        program,
-        code=tuple(code),
-        results=tuple(tuple([place[i] for i in indices]) for indices in program.results),
-        requirements=tuple(Requirement(place[r.condition], r.message) for r in program.requirements),
+    return Program(
+        program.name,
+        program.inputs,
+        program.outputs,
+        tuple(code),
+        tuple([tuple([place[i] for i in indices]) for indices in program.results]),
+        tuple([Requirement(place[r.condition], r.message) for r in program.requirements]),
     )
 
 
