@@ -22,12 +22,14 @@ from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program
 from liegen.program.lower import alone, lower
 from liegen.program.passes import optimise
+from liegen.program.rewrite import uncollected
 from liegen.trace import Graph, Parameter, aligned, formula, jacobian_formulas, latex, latex_name, latex_rows
 
 #: Orders whose counts are that close to the best one's are carried out.
 CLOSE = 1.005
 
 
+@uncollected()
 def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool = False) -> Kernel:
     """Differentiate, whiten and weigh where ``weighting`` says so, lower and optimise.
 

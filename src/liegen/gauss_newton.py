@@ -16,12 +16,14 @@ from liegen.kernel import Kernel, Output, PassCount
 from liegen.noise import Weighted, Weighting
 from liegen.program import Port
 from liegen.program.passes import optimise
+from liegen.program.rewrite import uncollected
 from liegen.trace import Graph, Parameter
 
 #: Programs that are larger than the smallest by this share, by a first count, do not get all passes.
 MARGIN = 0.02
 
 
+@uncollected()
 def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | None) -> Kernel:
     """The terms of a derived factor, from its graph without noise and loss.
 

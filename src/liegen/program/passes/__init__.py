@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from liegen.program.program import Program
-from liegen.program.rewrite import uncollected
 
 from .contraction import contract
 from .dead_code import dead
@@ -34,7 +33,6 @@ FINAL: tuple[Pass, ...] = (dead, contract, schedule)
 ROUNDS = 4
 
 
-@uncollected()
 def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
     """Run all passes; return the program and a row (name, operations left) per pass that ran.
 
