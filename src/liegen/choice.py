@@ -161,7 +161,6 @@ class Way:
         conditions = [self.values.scalars[id(d.condition)][0] for d in self.graph.domain]
         return (*[x for node in nodes for x in self.values.scalars[id(node)]], *conditions)
 
-
     @property
     def blocks(self) -> list[Matrix]:
         """The outputs, and all factors of the local blocks."""

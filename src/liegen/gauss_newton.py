@@ -84,9 +84,7 @@ def _ranked(
     return sorted(found.values(), key=lambda choice: choice[0])
 
 
-def _multiplied(
-    cost: Matrix, weighted: Sequence[Matrix], steps: Ladder, frontier: int
-) -> list[Matrix]:
+def _multiplied(cost: Matrix, weighted: Sequence[Matrix], steps: Ladder, frontier: int) -> list[Matrix]:
     terms = _terms(steps, Weighted.of(weighted), frontier)
     return [cost, *[(g,) for g in terms.g.values()], *terms.H.values()]
 

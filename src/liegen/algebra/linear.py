@@ -169,7 +169,10 @@ def matadd(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _nothing(row: Sequence[Scalar]) -> bool:
-    return not any([type(x) is not int or x for x in row])
+    for x in row:
+        if type(x) is not int or x:
+            return False
+    return True
 
 
 def matscale(k: Scalar, a: Matrix) -> Matrix:

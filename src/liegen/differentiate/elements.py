@@ -79,7 +79,9 @@ def _pieces(whole: Product, known: Collection[Product]) -> tuple[Product, ...]:
     for piece in sorted(filter(None, known), key=len, reverse=True):
         if piece[-1] in ending:
             ending[piece[-1]].append(piece)
-    best: list[tuple[int, int]] = [(0, 0)]  # for each end how many pieces there are, and where the last begins
+    best: list[tuple[int, int]] = [
+        (0, 0)
+    ]  # for each end how many pieces there are, and where the last begins
     for end, letter in enumerate(whole, 1):
         starts = [end - len(p) for p in ending[letter] if whole[max(end - len(p), 0) : end] == p]
         best.append(min([(best[start][0] + 1, start) for start in starts]))

@@ -13,7 +13,18 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import accumulate, combinations_with_replacement, count
 
-from liegen.algebra.linear import Matrix, Vector, add, eye, is_identity, matadd, matmul, matvec, transpose, zeros
+from liegen.algebra.linear import (
+    Matrix,
+    Vector,
+    add,
+    eye,
+    is_identity,
+    matadd,
+    matmul,
+    matvec,
+    transpose,
+    zeros,
+)
 
 from .graph_jacobian import Linearised
 

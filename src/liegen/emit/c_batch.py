@@ -88,7 +88,7 @@ def batch_name(kernel: Kernel) -> str:
 def without_chosen_conditions(program: Program) -> Program:
     """Selects between conditions become and, or, not: a select of lanes has numbers as arms."""
     conditions = condition_indices(program)
-    if not any([ins.op == "select" and ins.args[1] in conditions for ins in program.code]):
+    if not any(ins.op == "select" and ins.args[1] in conditions for ins in program.code):
         return program
     builder = Builder()
     place: list[int] = []

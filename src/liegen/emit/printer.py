@@ -89,7 +89,7 @@ def _constants(program: Program) -> dict[int, Any]:
         for k, ins in enumerate(program.code):
             if ins.op == "const":
                 known[k] = float(ins.value)
-            elif ins.args and ins.args[0] in known and all([a in known for a in ins.args]):
+            elif ins.args and ins.args[0] in known and all(a in known for a in ins.args):
                 call = arithmetic.get(ins.op) or functions[ins.op]
                 value = np.asarray(call(*(np.asarray(known[a])[()] for a in ins.args)))
                 known[k] = value.item()
@@ -118,7 +118,7 @@ def _kinds(program: Program) -> list[Kind]:
     """Whether each instruction is a number or a condition (a select between conditions is one)."""
     kinds: list[Kind] = []
     for op, args, _ in program.code:
-        chosen = op == "select" and all([kinds[a] == "condition" for a in args[1:]])
+        chosen = op == "select" and all(kinds[a] == "condition" for a in args[1:])
         kinds.append("condition" if chosen or op in CONDITIONS else "scalar")
     return kinds
 

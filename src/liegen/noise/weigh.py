@@ -101,12 +101,12 @@ class Weighted:
 
     def jacobian(self, J: Matrix) -> Matrix:
         """The Jacobian of the weighed residual, from that of the residual as it was."""
-        J = matmul(self.scale, J)
+        scaled = matmul(self.scale, J)
         if is_structural(self.ratio):
-            return J
-        (row,) = matmul((self.u,), J)
+            return scaled
+        (row,) = matmul((self.u,), scaled)
         moved = scale(self.ratio, row)
-        return tuple(sub(own, scale(x, moved)) for own, x in zip(J, self.u, strict=True))
+        return tuple(sub(own, scale(x, moved)) for own, x in zip(scaled, self.u, strict=True))
 
     @property
     def blocks(self) -> tuple[Matrix, ...]:

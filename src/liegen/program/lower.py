@@ -46,9 +46,9 @@ def lower(
 
     ``inputs`` pairs each port with its SX symbols, ``outputs`` each port with its entries, flat and
     row-major: SX scalars, or Python numbers for what is known (0, 1, -1). ``requirements`` pairs an SX
-    condition with its message. What is ``beside`` becomes a last output :data:`BESIDE`, without which the program
-    is what it would be (:func:`alone`). At a tie (``fmin(x, x)``, ``fabs(0)``) derivatives are CasADi's: 1/2
-    each, 0.
+    condition with its message. What is ``beside`` becomes a last output :data:`BESIDE`, without which the
+    program is what it would be (:func:`alone`). At a tie (``fmin(x, x)``, ``fabs(0)``) derivatives are
+    CasADi's: 1/2 each, 0.
 
     Raises DefinitionError for an operation that has no counterpart in generated code, for an expression
     that depends on a symbol that is no input, and for a port whose size is not its number of entries.

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -43,7 +43,9 @@ class Instruction(NamedTuple):
 
 
 #: An instruction of all its fields, in two thirds of the time: passes make tens of thousands.
-instruction: Callable[[tuple[str, tuple[int, ...], float]], Instruction] = partial(tuple.__new__, Instruction)
+instruction: Callable[[tuple[str, tuple[int, ...], float]], Instruction] = partial(
+    cast(Any, tuple).__new__, Instruction
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 
 from .program import COMMUTATIVE, Instruction, Program, Requirement, instruction
 
 
 @contextmanager
-def uncollected() -> Iterator[None]:
-    """Without Python's search for reference cycles, which the many tuples of a rewrite set off and never hold.
+def uncollected() -> Generator[None]:
+    """Without Python's search for reference cycles: derivation makes many tuples, which set it off, no cycles.
 
-    The search is the whole process's: it goes through all that a program has in memory, and took up to a
-    third of the time of all passes. Where it was off, it stays off.
+    The search goes through all that the process holds, and took a quarter of the time that large factors
+    take. Where it was off, it stays off.
     """
     searching = gc.isenabled()
     gc.disable()

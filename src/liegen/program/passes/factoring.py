@@ -8,7 +8,6 @@ from liegen.program.rewrite import rebuilt, use_counts
 from .dead_code import dead
 from .folding import power_of_two
 
-
 _SUMS = frozenset({"add", "sub", "select"})
 
 

@@ -27,7 +27,7 @@ def pairs_of(terms: list[Term]) -> Iterator[Pair]:
 
 @dataclass
 class Pairs:
-    """Which groups (sums, or products) hold which pairs; those that only one group ever holds are left out."""
+    """Which groups (sums, or products) hold which pairs; those that one alone ever holds are left out."""
 
     groups: dict[int, list[Term]]
     holders: dict[Pair, dict[int, None]] = field(default_factory=dict[Pair, dict[int, None]])

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from functools import partial
 from heapq import heappop, heappush
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 #: Sweeps over all choices; the search stops earlier when nothing is left to gain.
 SWEEPS = 4
@@ -68,7 +68,7 @@ class Node(NamedTuple):
 #: The fields of a node, which equal it.
 Fields = tuple[str, float, tuple[int, ...], tuple[int, ...]]
 #: A node of its fields, in two thirds of the time.
-node_of: Callable[[Fields], Node] = partial(tuple.__new__, Node)
+node_of: Callable[[Fields], Node] = partial(cast(Any, tuple).__new__, Node)
 
 
 def orientations(
@@ -138,7 +138,7 @@ class _Search:
         self.settle([k for k in range(total) if self.pays[k]])
 
     def sign_of(self, k: int) -> tuple[int, tuple[int, ...]]:
-        """(sign in which the node is at hand, operands whose negative it demands), but for sums and products."""
+        """(sign in which a node is at hand, operands whose negative it demands); of no sum, of no product."""
         d, kind = self.d, self.kinds[k]
         op, _, args, signs = self.nodes[k]
         if kind == Kind.PRODUCT:  # a quotient: a second sign of the denominator would be a second reciprocal
