@@ -169,10 +169,7 @@ def matadd(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _nothing(row: Sequence[Scalar]) -> bool:
-    for x in row:
-        if type(x) is not int or x:
-            return False
-    return True
+    return all(type(x) is int and not x for x in row)
 
 
 def matscale(k: Scalar, a: Matrix) -> Matrix:

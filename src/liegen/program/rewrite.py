@@ -11,7 +11,7 @@ from .program import COMMUTATIVE, Instruction, Program, Requirement, instruction
 
 @contextmanager
 def uncollected() -> Generator[None]:
-    """Without Python's search for reference cycles: derivation makes many tuples, which set it off, no cycles.
+    """Without the search for reference cycles: derivation makes many tuples, which set it off, and no cycles.
 
     The search goes through all that the process holds, and took a quarter of the time that large factors
     take. Where it was off, it stays off.
