@@ -132,7 +132,7 @@ class Elimination:
 
     def multiplied(self, chain: Numbers) -> Matrix:
         """The product of a chain."""
-        return self.strategy.multiply(chain, self.once)
+        return chain[0] if len(chain) == 1 else self.strategy.multiply(chain, self.once)
 
 
 def _rows(chain: Numbers) -> int:
