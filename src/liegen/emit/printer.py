@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
@@ -214,7 +215,7 @@ def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> L
         stores=tuple(
             tuple(
                 Store(port.name, place, syntax.result(texts[k]))
-                for place, k in zip(np.ndindex(port.shape), indices, strict=True)
+                for place, k in zip(product(*map(range, port.shape)), indices, strict=True)
             )
             for port, indices in zip(program.outputs, program.results, strict=True)
         ),
