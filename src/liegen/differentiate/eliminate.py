@@ -98,12 +98,11 @@ class Elimination:
     def add(self, a: int, b: int, chain: Numbers) -> None:
         """Add a path from a to b: parallel edges are summed."""
         ends = self.out.setdefault(a, {})
-        present = ends.get(b)
-        if present is not None:
-            chain = (self.once(matadd, self.multiplied(present), self.multiplied(chain)),)
+        if b in ends:
+            chain = (self.once(matadd, self.multiplied(ends[b]), self.multiplied(chain)),)
         else:
-            self.rows[a] = self.rows.get(a, 0) + _rows(chain)
-            self.columns[b] = self.columns.get(b, 0) + _columns(chain)
+            self.rows[a] = self.rows.get(a, 0) + len(chain[0])
+            self.columns[b] = self.columns.get(b, 0) + len(chain[-1][0])
         self.into.setdefault(b, {})[a] = ends[b] = chain
 
     def cost(self, v: int) -> int:
@@ -115,32 +114,24 @@ class Elimination:
         into, out = self.into.pop(v, {}), self.out.pop(v, {})
         for a, chain in into.items():
             del self.out[a][v]
-            self.rows[a] -= _rows(chain)
+            self.rows[a] -= len(chain[0])
         for b, chain in out.items():
             del self.into[b][v]
-            self.columns[b] -= _columns(chain)
-        left = {b: self.shared(chain, len(into)) for b, chain in out.items()}
-        right = {a: self.shared(chain, len(out)) for a, chain in into.items()}
+            self.columns[b] -= len(chain[-1][0])
+        left, right = self.shared(out, len(into)), self.shared(into, len(out))
         for b, outer in left.items():
             for a, inner in right.items():
                 self.add(a, b, (*outer, *inner))
 
-    def shared(self, chain: Numbers, users: int) -> Numbers:
+    def shared(self, ends: Ends, users: int) -> Ends:
         """Multiply out what several products will use."""
-        apart = users < 2 or self.strategy.unshared
-        return chain if apart else (self.multiplied(chain),)
+        if users < 2 or self.strategy.unshared:
+            return ends
+        return {n: (self.multiplied(chain),) for n, chain in ends.items()}
 
     def multiplied(self, chain: Numbers) -> Matrix:
         """The product of a chain."""
         return chain[0] if len(chain) == 1 else self.strategy.multiply(chain, self.once)
-
-
-def _rows(chain: Numbers) -> int:
-    return len(chain[0])
-
-
-def _columns(chain: Numbers) -> int:
-    return len(chain[-1][0])
 
 
 def eliminate(
