@@ -83,14 +83,14 @@ class Program:
     def validate(self) -> Program:
         """Return self. Raises ValueError for a reference forward, a wrong arity or a wrong size."""
         total = sum(port.size for port in self.inputs)
-        for k, ins in enumerate(self.code):
-            if len(ins.args) != ARITY.get(ins.op, -1):
-                raise ValueError(f"{self.name}: instruction {k} is no valid {ins.op!r}")
-            for a in ins.args:
+        for k, (op, args, value) in enumerate(self.code):
+            if len(args) != ARITY.get(op, -1):
+                raise ValueError(f"{self.name}: instruction {k} is no valid {op!r}")
+            for a in args:
                 if not 0 <= a < k:
                     raise ValueError(f"{self.name}: instruction {k} refers to a later one")
-            if ins.op == "input" and not 0 <= ins.value < total:
-                raise ValueError(f"{self.name}: instruction {k} reads input {ins.value} of {total}")
+            if op == "input" and not 0 <= value < total:
+                raise ValueError(f"{self.name}: instruction {k} reads input {value} of {total}")
         for port, indices in zip(self.outputs, self.results, strict=True):
             if len(indices) != port.size:
                 raise ValueError(f"{self.name}: output {port.name} needs {port.size} results")

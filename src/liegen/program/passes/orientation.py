@@ -47,6 +47,9 @@ KINDS: Mapping[str, Kind] = {
     "select": Kind.SELECT,
     "out": Kind.OUTPUT,
 }
+_CONDITIONS = (Kind.COMPARISON, Kind.LOGIC)
+#: They need their operands in one sign.
+_DEMANDING = (Kind.SIGNED, Kind.OUTPUT)
 #: Their sign does not depend on those of their operands.
 _SETTLED = (Kind.LEAF, Kind.EVEN, Kind.SIGNED, Kind.COMPARISON, Kind.LOGIC, Kind.OUTPUT)
 
@@ -115,16 +118,10 @@ class _Search:
             if node.op == "atan2":  # the sign of a zero matters on its cut
                 pinned.add(node.args[0])
                 self.choice[node.args[0]] = node.signs[0]
-        self.shared = [len(users) > 1 for users in self.users]
-        for k, constant in enumerate(self.constant):
-            if constant:
-                self.shared[k] = False
-        self.candidates = [
-            k
-            for k, kind in enumerate(self.kinds)
-            if self.shared[k] and kind not in (Kind.LOGIC, Kind.COMPARISON)
-        ]
-        self.fixed = [k in pinned or kind is Kind.LEAF for k, kind in enumerate(self.kinds)]
+        kinds, users = self.kinds, self.users
+        self.shared = [len(own) > 1 and not c for own, c in zip(users, self.constant, strict=True)]
+        self.candidates = [k for k, s in enumerate(self.shared) if s and kinds[k] not in _CONDITIONS]
+        self.fixed = [k in pinned or not node.args for k, node in enumerate(self.nodes)]
         self.both = [False] * total
         self.natural = [0] * total
         self.d = [0] * total
@@ -141,6 +138,8 @@ class _Search:
         """(sign in which a node is at hand, operands whose negative it demands); of no sum, of no product."""
         d, kind = self.d, self.kinds[k]
         op, _, args, signs = self.nodes[k]
+        if kind in _DEMANDING:
+            return 1, tuple([a for a, s in zip(args, signs, strict=True) if d[a] == -s])
         if kind == Kind.PRODUCT:  # a quotient: a second sign of the denominator would be a second reciprocal
             a, b = args
             return d[a] * ((self.natural[b] or self.choice[b]) if self.both[b] else d[b]), ()
@@ -154,8 +153,6 @@ class _Search:
         if kind == Kind.COMPARISON:
             s, t = d[args[0]] * signs[0], d[args[1]] * signs[1]
             return 1, ((args[1],) if s * t < 0 else ())
-        if kind in (Kind.SIGNED, Kind.OUTPUT):
-            return 1, tuple([a for a, s in zip(args, signs, strict=True) if d[a] == -s])
         return 1, ()
 
     def visit(self, k: int) -> bool:
@@ -290,7 +287,7 @@ def _assign(node: Node, final: list[int], free: list[bool], fixed: list[bool], w
         return
     if node.kind is Kind.COMPARISON:
         want = held[0] if held else 1
-    elif node.kind in (Kind.SIGNED, Kind.OUTPUT):
+    elif node.kind in _DEMANDING:
         want = 1
     elif node.kind not in (Kind.SUM, Kind.SELECT, Kind.ODD):
         return

@@ -40,10 +40,15 @@ def _most_waiting(program: Program, order: Sequence[int]) -> int:
                 last[a] = k
     live = most = 0
     for k in order:
-        # a result may take the place of an operand that is used for the last time
-        live += 1 - sum([last[a] == k for a in set(code[k].args)])
-        most = max(most, live)
-        live -= last[k] == k
+        live += 1
+        for a in code[k].args:  # a result may take the place of an operand that is used for the last time
+            if last[a] == k:
+                live -= 1
+                last[a] = -1
+        if live > most:
+            most = live
+        if last[k] == k:
+            live -= 1
     return most
 
 
