@@ -199,8 +199,8 @@ def block_diagonal(*blocks: Matrix) -> Matrix:
 
 def multiply_cost(a: Matrix, b: Matrix) -> int:
     """Number of scalar products in A B that structure does not make free."""
-    in_columns = [sum([not is_structural(x) for x in column]) for column in transpose(a)]
-    in_rows = [sum([not is_structural(x) for x in row]) for row in b]
+    in_columns = [sum([type(x) is not int for x in column]) for column in zip(*a, strict=True)]
+    in_rows = [sum([type(x) is not int for x in row]) for row in b]
     return sum([m * n for m, n in zip(in_columns, in_rows, strict=True)])
 
 
