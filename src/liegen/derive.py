@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from liegen.algebra import Scalar
 from liegen.algebra.linear import Matrix
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import GTSAM, Preset, form_chart
-from liegen.choice import ranked
+from liegen.choice import Way, entries, ranked
 from liegen.differentiate import STRATEGIES, Expressions, expressions, fused, linearised
 from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
@@ -19,14 +20,16 @@ from liegen.layouts import OWN, Stored, storage
 from liegen.manifolds import Manifold, ManifoldForm, MatrixValue, Vector
 from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program
-from liegen.program.lower import lower
+from liegen.program.lower import alone, lower
 from liegen.program.passes import optimise
+from liegen.program.rewrite import uncollected
 from liegen.trace import Graph, Parameter, aligned, formula, jacobian_formulas, latex, latex_name, latex_rows
 
 #: Orders whose counts are that close to the best one's are carried out.
 CLOSE = 1.005
 
 
+@uncollected()
 def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool = False) -> Kernel:
     """Differentiate, whiten and weigh where ``weighting`` says so, lower and optimise.
 
@@ -35,10 +38,12 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
     in :class:`Kernel`.
     """
     values = expressions(graph)
-    value, rows = optimise(lowered(graph, values, {}, weighting))
+    ways = _ways(graph, values) if graph.variables else []
+    begun = lowered(graph, values, {}, weighting, beside=entries(m for way in ways for m in way.blocks))
+    value, rows = optimise(alone(begun))
     name, best = "", value
-    if any(p.variable for p in graph.parameters):
-        name, best, rows = min(_candidates(graph, values, weighting), key=lambda c: c[1].operations)
+    if ways:
+        name, best, rows = min(_candidates(ways, begun, weighting), key=lambda c: c[1].operations)
     first = f"lower, {name} order" if name else "lower"
     passes = (PassCount(first, rows[0][1]), *(PassCount(*row) for row in rows[1:]))
     shown = unwhitened(graph) if weighting else graph
@@ -63,24 +68,26 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
     )
 
 
-def _candidates(
-    graph: Graph, values: Expressions, weighting: Weighting | None
-) -> Iterator[tuple[str, Program, tuple[tuple[str, int], ...]]]:
-    """The order, program and passes of each choice whose count is within ``CLOSE`` of the best one's."""
-    variants = [(graph, values)]
+def _ways(graph: Graph, values: Expressions) -> list[Way]:
+    """The local blocks as they are and without what cancels, fused and not."""
+    ways = [Way(graph, values, local) for local in linearised(graph, values)]
     other = fused(graph)
     if other is not graph:
-        variants.append((other, expressions(other)))
-    found = [
-        (count, name, local, g, v)
-        for g, v in variants
-        for local in linearised(g, v)
-        for count, name in ranked(g, v, local)
-    ]
+        shared = expressions(other, values)
+        ways += [Way(other, shared, local) for local in linearised(other, shared)]
+    return ways
+
+
+def _candidates(
+    ways: Sequence[Way], begun: Program, weighting: Weighting | None
+) -> Iterator[tuple[str, Program, tuple[tuple[str, int], ...]]]:
+    """The order, program and passes of each choice whose count is within ``CLOSE`` of the best one's."""
+    found = ranked(ways, begun)
     least = min(count for count, *_ in found)
-    for count, name, local, g, v in found:
+    for count, way, name in found:
         if count <= CLOSE * least:
-            yield name, *optimise(lowered(g, v, local.jacobians(STRATEGIES[name]), weighting))
+            blocks = way.local.jacobians(STRATEGIES[name])
+            yield name, *optimise(lowered(way.graph, way.values, blocks, weighting))
 
 
 def weights_of(graph: Graph, weighting: Weighting | None) -> tuple[Weight, ...]:
@@ -120,8 +127,13 @@ def lowered(
     values: Expressions,
     blocks: Mapping[tuple[str, str], Matrix],
     weighting: Weighting | None = None,
+    *,
+    beside: Sequence[Scalar] = (),
 ) -> Program:
-    """The outputs of a graph, and the given Jacobians, weighed, as a program without any pass."""
+    """The outputs of a graph, and the given Jacobians, weighed, as a program without any pass.
+
+    ``beside`` as in :func:`lower`.
+    """
     given = weight_symbols(graph, weighting)
     scalars: dict[str, Coordinates] = {name: values.scalars[id(node)] for name, node in graph.outputs}
     if weighting:
@@ -133,7 +145,7 @@ def lowered(
         (Port(f"{name}_D_{variable}", (len(m), len(m[0]))), tuple(x for row in m for x in row))
         for (name, variable), m in blocks.items()
     ]
-    return lowered_outputs(graph, values, given, outputs)
+    return lowered_outputs(graph, values, given, outputs, beside)
 
 
 def weight_symbols(graph: Graph, weighting: Weighting | None) -> dict[str, Coordinates]:
@@ -146,12 +158,13 @@ def lowered_outputs(
     values: Expressions,
     given: Mapping[str, Coordinates],
     outputs: Sequence[tuple[Port, Coordinates]],
+    beside: Sequence[Scalar] = (),
 ) -> Program:
     """Expressions in a graph's scalars, and in the keywords ``given``, as a program without any pass."""
     arguments = {**values.inputs, **given}
     inputs = [(Port(name, (len(coords),)), coords) for name, coords in arguments.items()]
     domain = [(values.scalars[id(d.condition)][0], d.message) for d in graph.domain]
-    return lower(graph.name, inputs, outputs, domain)
+    return lower(graph.name, inputs, outputs, domain, beside)
 
 
 def _argument(p: Parameter) -> Argument:

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import combinations_with_replacement
 
-from liegen.algebra.linear import Matrix, Vector, dot
+from liegen.algebra import Scalar
+from liegen.algebra.linear import Matrix, Vector, dot, eye
+from liegen.choice import Ledger, entries, opened
 from liegen.derive import lowered_outputs, weight_symbols
-from liegen.differentiate import Expressions, Terms, expressions, ladder, linearised, normal_terms
+from liegen.differentiate import Ladder, Terms, expressions, ladder, linearised, normal_terms
 from liegen.kernel import Kernel, Output, PassCount
-from liegen.noise import Weighting
-from liegen.program import Port, Program
+from liegen.noise import Weighted, Weighting
+from liegen.program import Port
 from liegen.program.passes import optimise
-from liegen.program.passes.subexpressions import cse
+from liegen.program.rewrite import uncollected
 from liegen.trace import Graph, Parameter
 
 #: Programs that are larger than the smallest by this share, by a first count, do not get all passes.
 MARGIN = 0.02
 
 
+@uncollected()
 def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | None) -> Kernel:
     """The terms of a derived factor, from its graph without noise and loss.
 
@@ -30,9 +34,22 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
     program with the fewest operations is kept.
     """
     values = expressions(graph)
-    counted = {cse(program).operations: program for program in _candidates(graph, values, weighting)}
-    near = [counted[n] for n in sorted(counted) if n <= (1 + MARGIN) * min(counted)]
-    best, rows = min((optimise(program) for program in near), key=lambda found: found[0].operations)
+    given = weight_symbols(graph, weighting)
+    ((_, node),) = graph.outputs
+    r = values.scalars[id(node)]
+    cost = weighting.cost(given, r) if weighting else 0.5 * dot(r, r)
+    weighted = weighting.weighted(given, r) if weighting else Weighted(r, eye(len(r)), r, 0)
+    ladders = [ladder(local) for local in linearised(graph, values)]
+    blocks = [((cost,),), *weighted.blocks, *[m for steps in ladders for m in steps.blocks]]
+    begun = lowered_outputs(graph, values, given, (), entries(blocks))
+    ranking = _ranked(*opened(begun, blocks), ladders)
+    least = min(count for count, _, _ in ranking)
+    programs = [
+        lowered_outputs(graph, values, given, _ports(cost, _terms(steps, weighted, frontier)))
+        for count, steps, frontier in ranking
+        if count <= (1 + MARGIN) * least
+    ]
+    best, rows = min((optimise(program) for program in programs), key=lambda found: found[0].operations)
     (residual,) = kernel.outputs
     return replace(
         kernel,
@@ -48,27 +65,41 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
     )
 
 
-def _candidates(graph: Graph, values: Expressions, weighting: Weighting | None) -> Iterator[Program]:
-    """A program for each frontier, of the local blocks as they are and without what cancels."""
-    ((_, node),) = graph.outputs
-    residual, given = values.scalars[id(node)], weight_symbols(graph, weighting)
-    cost = weighting.cost(given, residual) if weighting else 0.5 * dot(residual, residual)
+def _ranked(
+    ledger: Ledger, counted: Sequence[Matrix], ladders: Sequence[Ladder]
+) -> list[tuple[int, Ladder, int]]:
+    """The local blocks, as they are or without what cancels, and the frontier, with what these take.
 
-    def weigh(blocks: Mapping[int, Matrix]) -> tuple[Vector, Mapping[int, Matrix]]:
-        return weighting.apply(given, residual, blocks) if weighting else (residual, blocks)
+    Operations up to negations, fewest first. Of those that need the same ones there is one, and none of those
+    that take far more.
+    """
+    (cost, *weighted), left = counted[:5], iter(counted[5:])
+    found: dict[bytes, tuple[int, Ladder, int]] = {}
+    for steps in ladders:
+        own = steps.holding([next(left) for _ in steps.blocks])
+        for frontier in steps.frontiers:
+            nodes = ledger.taken(partial(_multiplied, cost, weighted, own, frontier))
+            if nodes is not None:
+                found[nodes] = (ledger.count(nodes), steps, frontier)
+    return sorted(found.values(), key=lambda choice: choice[0])
 
-    for local in linearised(graph, values):
-        steps = ladder(local)
-        for frontier in range(len(steps.order) + 1):
-            terms = normal_terms(steps, weigh, frontier)
-            yield lowered_outputs(graph, values, given, [(Port("cost", (1,)), (cost,)), *_ports(terms)])
+
+def _multiplied(cost: Matrix, weighted: Sequence[Matrix], steps: Ladder, frontier: int) -> list[Matrix]:
+    terms = _terms(steps, Weighted.of(weighted), frontier)
+    return [cost, *[(g,) for g in terms.g.values()], *terms.H.values()]
 
 
-def _ports(terms: Terms) -> Iterator[tuple[Port, Vector]]:
-    for name, g in terms.g.items():
-        yield Port(f"g_{name}", (len(g),)), g
-    for (a, b), H in terms.H.items():
-        yield Port(f"H_{a}_{b}", (len(H), len(H[0]))), tuple(x for row in H for x in row)
+def _terms(steps: Ladder, weighted: Weighted, frontier: int) -> Terms:
+    return normal_terms(steps, weighted.residual, weighted.jacobian, frontier)
+
+
+def _ports(cost: Scalar, terms: Terms) -> list[tuple[Port, Vector]]:
+    gradients = [(Port(f"g_{name}", (len(g),)), g) for name, g in terms.g.items()]
+    blocks = [
+        (Port(f"H_{a}_{b}", (len(H), len(H[0]))), tuple([x for row in H for x in row]))
+        for (a, b), H in terms.H.items()
+    ]
+    return [(Port("cost", (1,)), (cost,)), *gradients, *blocks]
 
 
 def _outputs(graph: Graph, weighting: Weighting | None) -> tuple[Output, ...]:

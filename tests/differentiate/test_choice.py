@@ -7,7 +7,7 @@ import pytest
 
 from liegen import R1, R3, SE3, SO3, factor, function, sin, stack
 from liegen.bench import formulas
-from liegen.choice import ranked
+from liegen.choice import Way, entries, ranked
 from liegen.derive import derive, lowered
 from liegen.differentiate import STRATEGIES, expressions, fused, jacobians, linearised
 from liegen.library import bearing_se3_gtsam, between_se3, between_so3, projection_cal3_ds2
@@ -36,14 +36,19 @@ def half_chain(x0: SE3, x1: SE3, x2: SE3, x3: SE3, *, z: SE3):
     return z.local(x0 @ x1 @ x2 @ x3)
 
 
+def ranking(graph, values, local):
+    way = Way(graph, values, local)
+    return ranked([way], lowered(graph, values, {}, beside=entries(way.blocks)))
+
+
 @pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.name)
 def test_counting_foretells_what_an_order_takes(function):
     graph = function.plain
     values = expressions(graph)
     local = linearised(graph, values)[0]
-    order = ranked(graph, values, local)
-    assert [count for count, _ in order] == sorted(count for count, _ in order)
-    for count, name in order[:3]:
+    order = ranking(graph, values, local)
+    assert [count for count, _, _ in order] == sorted(count for count, _, _ in order)
+    for count, _, name in order[:3]:
         program = dead(signs(fold(cse(lowered(graph, values, local.jacobians(STRATEGIES[name]))))))
         # folding knows a few identities more than counting does
         assert settled(program) <= count <= 1.04 * settled(program) + 2
@@ -54,7 +59,7 @@ def test_the_best_order_is_no_worse_than_any(function):
     graph = function.plain
     values = expressions(graph)
     local = linearised(graph, values)[0]
-    best = ranked(graph, values, local)[0][0]
+    best = ranking(graph, values, local)[0][0]
     for strategy in STRATEGIES.values():
         assert best <= 1.04 * settled(signs(cse(lowered(graph, values, local.jacobians(strategy))))) + 2
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 from itertools import pairwise
-from typing import Protocol
+from typing import Any, Protocol
 
 from .base import Scalar
 
@@ -45,9 +45,10 @@ def neg(a: Scalar) -> Scalar:
 
 def times(a: Scalar, b: Scalar) -> Scalar:
     """Return a b; structural factors cost nothing."""
-    for s, other in ((a, b), (b, a)):
-        if type(s) is int and s in (0, 1, -1):
-            return 0 if s == 0 else other if s == 1 else -other
+    if type(a) is int and -1 <= a <= 1:
+        return b if a == 1 else -b if a else 0
+    if type(b) is int and -1 <= b <= 1:
+        return a if b == 1 else -a if b else 0
     return a * b
 
 
@@ -146,9 +147,15 @@ def matmul(a: Matrix, b: Matrix) -> Matrix:
         elif len(terms) == 1 and type(terms[0][0]) is int and terms[0][0] == 1:
             rows.append(terms[0][1])
         else:
-            columns = range(len(nothing))
-            rows.append(tuple([total([times(x, other[j]) for x, other in terms]) for j in columns]))
+            columns = zip(*[other for _, other in terms], strict=True)
+            factors = [x for x, _ in terms]
+            rows.append(tuple([_combined(factors, column) for column in columns]))
     return tuple(rows)
+
+
+def _combined(a: Sequence[Scalar], b: Sequence[Scalar]) -> Scalar:
+    """a . b, where b has many structural zeros."""
+    return total([times(x, y) for x, y in zip(a, b, strict=True) if type(y) is not int or y])
 
 
 def elementwise(f: Callable[[Scalar, Scalar], Scalar], a: Matrix, b: Matrix) -> Matrix:
@@ -162,7 +169,7 @@ def matadd(a: Matrix, b: Matrix) -> Matrix:
 
 
 def _nothing(row: Sequence[Scalar]) -> bool:
-    return not any(type(x) is not int or x for x in row)
+    return all(type(x) is int and not x for x in row)
 
 
 def matscale(k: Scalar, a: Matrix) -> Matrix:
@@ -192,8 +199,8 @@ def block_diagonal(*blocks: Matrix) -> Matrix:
 
 def multiply_cost(a: Matrix, b: Matrix) -> int:
     """Number of scalar products in A B that structure does not make free."""
-    in_columns = [sum([not is_structural(x) for x in column]) for column in transpose(a)]
-    in_rows = [sum([not is_structural(x) for x in row]) for row in b]
+    in_columns = [sum([type(x) is not int for x in column]) for column in zip(*a, strict=True)]
+    in_rows = [sum([type(x) is not int for x in row]) for row in b]
     return sum([m * n for m, n in zip(in_columns, in_rows, strict=True)])
 
 
@@ -243,25 +250,49 @@ def is_identity(a: Matrix | Factor) -> bool:
     return bool(a) and a == eye(len(a))
 
 
-def product_from_left(chain: Chain) -> Matrix:
+#: How a function of two matrices is called: ``once(f, a, b)`` is ``f(a, b)``.
+Once = Callable[[Callable[[Matrix, Matrix], Any], Matrix, Matrix], Any]
+
+
+def called(f: Callable[[Matrix, Matrix], Any], a: Matrix, b: Matrix) -> Any:
+    """Return f(a, b)."""
+    return f(a, b)
+
+
+@dataclass(frozen=True, eq=False)
+class Remembered:
+    """Results by function and matrices (the same objects): what was asked before is not computed again."""
+
+    known: dict[tuple[Any, int, int], tuple[Any, Matrix, Matrix]]
+
+    def __call__(self, f: Callable[[Matrix, Matrix], Any], a: Matrix, b: Matrix) -> Any:
+        """Return f(a, b)."""
+        key = f, id(a), id(b)
+        found = self.known.get(key)
+        if found is None:
+            found = self.known[key] = f(a, b), a, b  # both are held, so that no identity comes again
+        return found[0]
+
+
+def product_from_left(chain: Chain, once: Once = called) -> Matrix:
     """Multiply a chain out from the left."""
-    return reduce(matmul, plain(chain))
+    return reduce(partial(once, matmul), plain(chain))
 
 
-def product_from_right(chain: Chain) -> Matrix:
+def product_from_right(chain: Chain, once: Once = called) -> Matrix:
     """Multiply a chain out from the right."""
-    return reduce(lambda total, factor: matmul(factor, total), reversed(plain(chain)))
+    return reduce(lambda total, factor: once(matmul, factor, total), reversed(plain(chain)))
 
 
-def product(chain: Chain) -> Matrix:
+def product(chain: Chain, once: Once = called) -> Matrix:
     """Multiply a chain out, at each step where it costs least (leftmost first among equals)."""
     factors = list(plain(chain))
-    costs = [multiply_cost(a, b) for a, b in pairwise(factors)]
+    costs = [once(multiply_cost, a, b) for a, b in pairwise(factors)]
     while costs:
         k = costs.index(min(costs))
-        factors[k : k + 2] = [matmul(factors[k], factors[k + 1])]
+        factors[k : k + 2] = [once(matmul, factors[k], factors[k + 1])]
         del costs[k]
         for i in (k - 1, k):
             if 0 <= i < len(costs):
-                costs[i] = multiply_cost(factors[i], factors[i + 1])
+                costs[i] = once(multiply_cost, factors[i], factors[i + 1])
     return factors[0]

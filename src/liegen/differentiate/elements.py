@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 from liegen.algebra.factors import Adjoint, Word
@@ -74,11 +75,21 @@ class Elements:
 
 def _pieces(whole: Product, known: Collection[Product]) -> tuple[Product, ...]:
     """The product cut into as few known ones as possible, the first cut as early as possible."""
-    best: list[tuple[Product, ...]] = [()]
-    for end in range(1, len(whole) + 1):
-        cuts = [(*best[start], whole[start:end]) for start in range(end) if whole[start:end] in known]
-        best.append(min(cuts, key=len))
-    return best[-1]
+    ending: dict[tuple[Key, int], list[Product]] = {letter: [] for letter in whole}
+    for piece in sorted(filter(None, known), key=len, reverse=True):
+        if piece[-1] in ending:
+            ending[piece[-1]].append(piece)
+    best: list[tuple[int, int]] = [
+        (0, 0)
+    ]  # for each end how many pieces there are, and where the last begins
+    for end, letter in enumerate(whole, 1):
+        starts = [end - len(p) for p in ending[letter] if whole[max(end - len(p), 0) : end] == p]
+        best.append(min([(best[start][0] + 1, start) for start in starts]))
+    cuts = [len(whole)]
+    while cuts[-1]:
+        cuts.append(best[cuts[-1]][1])
+    cuts.reverse()
+    return tuple([whole[a:b] for a, b in pairwise(cuts)])
 
 
 def elements(nodes: Iterable[Node], scalars: Mapping[int, Vector]) -> Elements:

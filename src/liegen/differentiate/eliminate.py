@@ -16,6 +16,8 @@ from liegen.algebra.linear import (
     Chain,
     Matrix,
     Numbers,
+    Once,
+    Remembered,
     matadd,
     product,
     product_from_left,
@@ -34,7 +36,7 @@ class Strategy:
     """In which order inner vertices are eliminated, and how chains are multiplied."""
 
     order: Order
-    multiply: Callable[[Numbers], Matrix]
+    multiply: Callable[[Numbers, Once], Matrix]
     unshared: bool = False  # whether a chain that several products use is multiplied out in each of them
 
 
@@ -95,8 +97,9 @@ STRATEGIES: Mapping[str, Strategy] = {
 class Elimination:
     """A graph from which vertices are taken one by one."""
 
-    def __init__(self, edges: Edges, strategy: Strategy) -> None:
+    def __init__(self, edges: Edges, strategy: Strategy, once: Once) -> None:
         self.strategy = strategy
+        self.once = once
         self.into: dict[int, Ends] = {}
         self.out: dict[int, Ends] = {}
         self.rows: dict[int, int] = {}  # of all edges out of a vertex
@@ -106,15 +109,13 @@ class Elimination:
 
     def add(self, a: int, b: int, chain: Numbers) -> None:
         """Add a path from a to b: parallel edges are summed."""
-        present = self.out.get(a, {}).get(b)
-        if present is not None:
-            multiply = self.strategy.multiply
-            chain = (matadd(multiply(present), multiply(chain)),)
+        ends = self.out.setdefault(a, {})
+        if b in ends:
+            chain = (self.once(matadd, self.multiplied(ends[b]), self.multiplied(chain)),)
         else:
-            self.rows[a] = self.rows.get(a, 0) + _rows(chain)
-            self.columns[b] = self.columns.get(b, 0) + _columns(chain)
-        self.into.setdefault(b, {})[a] = chain
-        self.out.setdefault(a, {})[b] = chain
+            self.rows[a] = self.rows.get(a, 0) + len(chain[0])
+            self.columns[b] = self.columns.get(b, 0) + len(chain[-1][0])
+        self.into.setdefault(b, {})[a] = ends[b] = chain
 
     def numbers(self, v: int) -> int:
         """How many the vertex has; 0 for a parameter."""
@@ -129,36 +130,37 @@ class Elimination:
         into, out = self.into.pop(v, {}), self.out.pop(v, {})
         for a, chain in into.items():
             del self.out[a][v]
-            self.rows[a] -= _rows(chain)
+            self.rows[a] -= len(chain[0])
         for b, chain in out.items():
             del self.into[b][v]
-            self.columns[b] -= _columns(chain)
-        left = {b: self.shared(chain, len(into)) for b, chain in out.items()}
-        right = {a: self.shared(chain, len(out)) for a, chain in into.items()}
+            self.columns[b] -= len(chain[-1][0])
+        left, right = self.shared(out, len(into)), self.shared(into, len(out))
         for b, outer in left.items():
             for a, inner in right.items():
                 self.add(a, b, (*outer, *inner))
 
-    def shared(self, chain: Numbers, users: int) -> Numbers:
+    def shared(self, ends: Ends, users: int) -> Ends:
         """Multiply out what several products will use."""
-        apart = users < 2 or self.strategy.unshared
-        return chain if apart else (self.strategy.multiply(chain),)
+        if users < 2 or self.strategy.unshared:
+            return ends
+        return {n: (self.multiplied(chain),) for n, chain in ends.items()}
+
+    def multiplied(self, chain: Numbers) -> Matrix:
+        """The product of a chain."""
+        return chain[0] if len(chain) == 1 else self.strategy.multiply(chain, self.once)
 
 
-def _rows(chain: Numbers) -> int:
-    return len(chain[0])
+def eliminate(
+    edges: Edges, inner: Sequence[int], strategy: Strategy, once: Once | None = None
+) -> dict[tuple[int, int], Matrix]:
+    """Jacobians of the remaining vertices: {(from, to): matrix}.
 
-
-def _columns(chain: Numbers) -> int:
-    return len(chain[-1][0])
-
-
-def eliminate(edges: Edges, inner: Sequence[int], strategy: Strategy) -> dict[tuple[int, int], Matrix]:
-    """Jacobians of the remaining vertices: {(from, to): matrix}."""
-    graph = Elimination(edges, strategy)
+    With the same ``once`` strategies share the products that they have in common.
+    """
+    graph = Elimination(edges, strategy, once or Remembered({}))
     for v in strategy.order(graph, inner):
         graph.remove(v)
-    return {(a, b): strategy.multiply(chain) for a, ends in graph.out.items() for b, chain in ends.items()}
+    return {(a, b): graph.multiplied(chain) for a, ends in graph.out.items() for b, chain in ends.items()}
 
 
 def accumulate(edges: dict[tuple[int, int], Chain], edge: tuple[int, int], chain: Chain) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from liegen.algebra.casadi_backend import ca
-from liegen.algebra.linear import Chain, Matrix, Numbers, eye, plain, stacked, transpose, zeros
+from liegen.algebra.casadi_backend import scalar
+from liegen.algebra.linear import Chain, Matrix, Numbers, Once, eye, plain, stacked, transpose, zeros
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import Preset, form_chart
 from liegen.manifolds import Leaf, Node
@@ -26,22 +26,34 @@ class Expressions:
     scalars: Mapping[int, Coordinates]
 
 
-def expressions(graph: Graph) -> Expressions:
-    """Evaluate every node on fresh symbols of the parameters."""
-    inputs = {p.name: symbols(f"{p.name}_", p.storage.size) for p in graph.parameters}
-    scalars: dict[int, Coordinates] = {
-        id(p.node): p.storage.taken(inputs[p.name], normalise=graph.normalise) for p in graph.parameters
-    }
+def expressions(graph: Graph, known: Expressions | None = None) -> Expressions:
+    """Evaluate every node on fresh symbols of the parameters.
+
+    Or on those of another graph of the same parameters, whose expressions are ``known``: the nodes that both
+    graphs have keep their scalars.
+    """
+    inputs = known.inputs if known else _symbols(graph)
+    scalars: dict[int, Coordinates] = (
+        dict(known.scalars)
+        if known
+        else {
+            id(p.node): p.storage.taken(inputs[p.name], normalise=graph.normalise) for p in graph.parameters
+        }
+    )
     for node in graph.nodes():
         if id(node) in scalars:
             continue
         operation = node.operation
         scalars[id(node)] = (
-            tuple(ca.SX(float(c)) for c in operation.coords)
+            tuple(scalar(float(c)) for c in operation.coords)
             if isinstance(operation, Leaf)
             else operation.value(*(scalars[id(n)] for n in node.operands))
         )
     return Expressions(inputs, scalars)
+
+
+def _symbols(graph: Graph) -> dict[str, Coordinates]:
+    return {p.name: symbols(f"{p.name}_", p.storage.size) for p in graph.parameters}
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,9 +68,9 @@ class Linearised:
     inner: tuple[int, ...]
     wanted: Mapping[tuple[str, str], tuple[tuple[tuple[int, int], tuple[int, int]], ...]]
 
-    def jacobians(self, strategy: Strategy) -> dict[tuple[str, str], Matrix]:
-        """Jacobian of each output by each variable, {(output, variable): matrix}."""
-        products = eliminate(self.edges, self.inner, strategy)
+    def jacobians(self, strategy: Strategy, once: Once | None = None) -> dict[tuple[str, str], Matrix]:
+        """Jacobian of each output by each variable, {(output, variable): matrix}; see :func:`eliminate`."""
+        products = eliminate(self.edges, self.inner, strategy, once)
         return {
             key: stacked(*[products.get(edge) or zeros(*shape) for edge, shape in parts])
             for key, parts in self.wanted.items()

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from liegen.algebra import Scalar
-from liegen.algebra.casadi_backend import ca
+from liegen.algebra.casadi_backend import ca, scalar, symbol
 from liegen.algebra.linear import Chain, Matrix, is_structural
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.manifolds import ManifoldForm, Operation, Value
@@ -17,7 +17,7 @@ SX = Any
 
 def symbols(name: str, n: int) -> Coordinates:
     """Fresh SX scalars."""
-    return tuple(ca.SX.sym(f"{name}{k}") for k in range(n))
+    return tuple(symbol(f"{name}{k}") for k in range(n))
 
 
 def local_blocks(
@@ -104,7 +104,7 @@ def _matrix(m: SX, fresh: Sequence[Coordinates], actual: Sequence[Coordinates]) 
     entries: list[list[Scalar]] = [[0] * columns for _ in range(rows)]
     row, column = filled.sparsity().get_triplet()
     for i, j, x in zip(row, column, filled.nonzeros(), strict=True):
-        entries[i][j] = structural(x)
+        entries[i][j] = structural(scalar(x))
     return tuple(tuple(r) for r in entries)
 
 

@@ -8,16 +8,25 @@ relative pose c = x^-1 y: there H_cc is H_yy, and H_xx = A^T H_yy A with A = -Ad
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from itertools import accumulate, combinations_with_replacement, count
 
-from liegen.algebra.linear import Matrix, Vector, add, eye, matadd, matmul, matvec, transpose, zeros
+from liegen.algebra.linear import (
+    Matrix,
+    Vector,
+    add,
+    eye,
+    is_identity,
+    matadd,
+    matmul,
+    matvec,
+    transpose,
+    zeros,
+)
 
 from .graph_jacobian import Linearised
-
-#: From Jacobians of the residual by vertices to the weighed residual and the weighed Jacobians.
-Weigh = Callable[[Mapping[int, Matrix]], tuple[Vector, Mapping[int, Matrix]]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +51,31 @@ class Ladder:
     sinks: Mapping[int, int]
     sources: Mapping[str, tuple[int, int]]
 
+    @property
+    def frontiers(self) -> tuple[int, ...]:
+        """How many vertices may be eliminated before the terms are formed; of equal choices the last one.
+
+        One edge alone leads to a vertex, and it is the identity: then the vertex makes no difference.
+        """
+        ways = Counter(source for below in self.into.values() for source in below)
+
+        def same(vertex: int) -> bool:
+            below = self.into[vertex]
+            return len(below) == 1 and all(ways[u] == 1 and is_identity(B) for u, B in below.items())
+
+        return (*[k for k, vertex in enumerate(self.order) if not same(vertex)], len(self.order))
+
+    @property
+    def blocks(self) -> tuple[Matrix, ...]:
+        """The matrices of ``into``, in order."""
+        return tuple(B for below in self.into.values() for B in below.values())
+
+    def holding(self, blocks: Iterable[Matrix]) -> Ladder:
+        """The same ladder with other matrices."""
+        left = iter(blocks)
+        into = {v: {source: next(left) for source in below} for v, below in self.into.items()}
+        return replace(self, into=into)
+
 
 def ladder(local: Linearised) -> Ladder:
     """The blocks of a graph with one output."""
@@ -61,12 +95,15 @@ def ladder(local: Linearised) -> Ladder:
     return Ladder(tuple(order), into, sinks, {name: (edge[0], shape[1]) for name, edge, shape in ends})
 
 
-def normal_terms(steps: Ladder, weigh: Weigh, frontier: int) -> Terms:
-    """The terms; the first ``frontier`` vertices are eliminated as Jacobians, the others by congruence."""
+def normal_terms(steps: Ladder, residual: Vector, weigh: Callable[[Matrix], Matrix], frontier: int) -> Terms:
+    """The terms; the first ``frontier`` vertices are eliminated as Jacobians, the others by congruence.
+
+    ``residual`` is the weighed one, ``weigh`` makes its Jacobians of those of the residual as it was.
+    """
     jacobian = _selections(steps.sinks)
     for vertex in steps.order[:frontier]:
         jacobian = _product(jacobian, vertex, steps.into[vertex])
-    residual, weighed = weigh(jacobian)
+    weighed = {v: weigh(J) for v, J in jacobian.items()}
     square = Square(
         {v: matvec(transpose(J), residual) for v, J in weighed.items()},
         {(v, w): _gram(weighed[v], weighed[w], v == w) for v, w in combinations_with_replacement(weighed, 2)},

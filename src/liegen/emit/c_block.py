@@ -103,6 +103,8 @@ def names_of(kernel: Kernel) -> Names:
 def without_chosen_conditions(program: Program) -> Program:
     """Selects between conditions become and, or, not: a select of lanes has numbers as arms."""
     conditions = condition_indices(program)
+    if not any(ins.op == "select" and ins.args[1] in conditions for ins in program.code):
+        return program
     builder = Builder()
     place: list[int] = []
     for ins in program.code:
@@ -113,7 +115,7 @@ def without_chosen_conditions(program: Program) -> Program:
             place.append(builder.emit("or", (builder.emit("and", (c, yes)), other)))
         else:
             place.append(builder.emit(ins.op, args, ins.value))
-    return rebuilt(program, builder.code, place) if conditions else program
+    return rebuilt(program, builder.code, place)
 
 
 def _fresh(name: str, used: Collection[str]) -> str:

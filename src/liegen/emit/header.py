@@ -121,6 +121,8 @@ def interface_doc(kernel: Kernel, program: Program) -> tuple[str, ...]:
 
 
 def _wrapped(line: str) -> list[str]:
+    if line.isprintable() and line == line.strip() and 0 < len(line) <= LINE - 2:
+        return [f"  {line}"]  # as wrap does, which takes long
     return wrap(
         line,
         LINE,

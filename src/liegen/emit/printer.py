@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
@@ -93,19 +94,20 @@ def _constants(program: Program) -> dict[int, Any]:
         for k, ins in enumerate(program.code):
             if ins.op == "const":
                 known[k] = float(ins.value)
-            elif ins.args and all(a in known for a in ins.args):
+            elif ins.args and ins.args[0] in known and all(a in known for a in ins.args):
                 call = arithmetic.get(ins.op) or functions[ins.op]
                 value = np.asarray(call(*(np.asarray(known[a])[()] for a in ins.args)))
                 known[k] = value.item()
     return known
 
 
-def _reads(program: Program, roots: Sequence[int], constants: Mapping[int, Any]) -> Counter[int]:
+def _reads(program: Program, roots: Sequence[int], constants: Mapping[int, Any]) -> Mapping[int, int]:
     """How often every instruction that the roots need is read."""
-    counts = Counter(roots)
+    counts = dict(Counter(roots))
     for k in range(len(program.code) - 1, -1, -1):
         if k in counts and k not in constants:
-            counts.update(program.code[k].args)
+            for a in program.code[k].args:
+                counts[a] = counts.get(a, 0) + 1
     return counts
 
 
@@ -120,10 +122,9 @@ def _usage(program: Program) -> _Usage:
 def _kinds(program: Program) -> list[Kind]:
     """Whether each instruction is a number or a condition (a select between conditions is one)."""
     kinds: list[Kind] = []
-    for ins in program.code:
-        arms = [kinds[a] for a in ins.args[1:]] if ins.op == "select" else ["scalar"]
-        is_condition = ins.op in CONDITIONS or all(kind == "condition" for kind in arms)
-        kinds.append("condition" if is_condition else "scalar")
+    for op, args, _ in program.code:
+        chosen = op == "select" and all(kinds[a] == "condition" for a in args[1:])
+        kinds.append("condition" if chosen or op in CONDITIONS else "scalar")
     return kinds
 
 
@@ -237,7 +238,7 @@ def print_program(program: Program, syntax: Syntax, scalars: Sequence[str]) -> L
         stores=tuple(
             tuple(
                 Store(port.name, place, syntax.result(texts[k]))
-                for place, k in zip(np.ndindex(port.shape), indices, strict=True)
+                for place, k in zip(product(*map(range, port.shape)), indices, strict=True)
             )
             for port, indices in zip(program.outputs, program.results, strict=True)
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 #: Binding strengths shared by the languages: what needs no parentheses anywhere, down to a choice ``?:``.
 ATOM, PREFIX, PRODUCT, SUM, COMPARISON, CHOICE = 100, 90, 80, 70, 50, 0
@@ -11,8 +12,7 @@ ATOM, PREFIX, PRODUCT, SUM, COMPARISON, CHOICE = 100, 90, 80, 70, 50, 0
 _OPPOSITE: Mapping[str, str] = {"add": "sub", "sub": "add"}
 
 
-@dataclass(frozen=True, slots=True)
-class Operator:
+class Operator(NamedTuple):
     """A prefix or infix operator. Chains within one ``family`` associate to the left."""
 
     symbol: str
@@ -20,8 +20,7 @@ class Operator:
     family: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Expression:
+class Expression(NamedTuple):
     """Text, how strongly its outermost operator binds, that operator's family, and whether it is a number."""
 
     text: str
@@ -49,25 +48,25 @@ class Syntax:
 
     def express(self, op: str, operands: Sequence[Expression]) -> Expression:
         """The text of one operation."""
-        if op == "select" and self.choice:
-            return Expression(self.choice.format(*(_wrap(x, x.binding > CHOICE) for x in operands)), CHOICE)
-        if op not in self.operators:
-            return Expression(f"{self.calls[op]}({', '.join(self.result(x) for x in operands)})")
+        operator = self.operators.get(op)
+        if operator is None:
+            if op == "select" and self.choice:
+                arms = [_wrap(x, x.binding > CHOICE) for x in operands]
+                return Expression(self.choice.format(*arms), CHOICE)
+            return Expression(f"{self.calls[op]}({', '.join([self.result(x) for x in operands])})")
+        symbol, binding, family = operator
         last = operands[-1]
-        if op in _OPPOSITE and last.family == "negative":  # a + (-c) is a - c, to the last bit
+        if last.family == "negative" and op in _OPPOSITE:  # a + (-c) is a - c, to the last bit
             return self.express(_OPPOSITE[op], [operands[0], Expression(last.text[1:])])
-        operator = self.operators[op]
         if len(operands) == 1:
-            text = operator.symbol + _wrap(last, last.binding > operator.binding)
-        else:
-            first = operands[0]
-            chain = first.binding == operator.binding and first.family == operator.family != ""
-            left = _wrap(first, chain or first.binding > operator.binding)
-            # A term or factor that starts with a minus sign is legal bare, but reads badly.
-            signed = operator.binding >= SUM and last.text.startswith("-")
-            right = _wrap(last, last.binding > operator.binding and not signed)
-            text = f"{left} {operator.symbol} {right}"
-        return Expression(text, operator.binding, operator.family)
+            return Expression(symbol + _wrap(last, last.binding > binding), binding, family)
+        first = operands[0]
+        chain = first.binding == binding and first.family == family != ""
+        left = first.text if chain or first.binding > binding else f"({first.text})"
+        # A term or factor that starts with a minus sign is legal bare, but reads badly.
+        signed = binding >= SUM and last.text.startswith("-")
+        right = last.text if last.binding > binding and not signed else f"({last.text})"
+        return Expression(f"{left} {symbol} {right}", binding, family)
 
     def result(self, operand: Expression) -> str:
         """The text of an operand that stands alone."""

@@ -30,6 +30,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        auto_reload=False,
     )
     filters: dict[str, Any] = {
         "c_comment": c_comment,

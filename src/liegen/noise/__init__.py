@@ -14,5 +14,6 @@ from .models import NOISES as NOISES
 from .models import Noise as Noise
 from .weigh import MODES as MODES
 from .weigh import Weight as Weight
+from .weigh import Weighted as Weighted
 from .weigh import Weighting as Weighting
 from .weigh import weighting as weighting

@@ -90,13 +90,34 @@ def _corrected(loss: Loss, parameters: Sequence[Scalar], u: Vector) -> Weighed:
     return Weighed(root, scale(root / gap, u), ratio)
 
 
-def _along(u: Vector, ratio: Scalar, J: Matrix) -> Matrix:
-    """(I - ratio u u^T) J."""
-    if is_structural(ratio):
-        return J
-    (row,) = matmul((u,), J)
-    moved = scale(ratio, row)
-    return tuple(sub(own, scale(x, moved)) for own, x in zip(J, u, strict=True))
+@dataclass(frozen=True)
+class Weighted:
+    """A residual, whitened and weighed, and what makes Jacobians of it: (I - ratio u u^T) scale J."""
+
+    residual: Vector
+    scale: Matrix
+    u: Vector
+    ratio: Scalar
+
+    def jacobian(self, J: Matrix) -> Matrix:
+        """The Jacobian of the weighed residual, from that of the residual as it was."""
+        scaled = matmul(self.scale, J)
+        if is_structural(self.ratio):
+            return scaled
+        (row,) = matmul((self.u,), scaled)
+        moved = scale(self.ratio, row)
+        return tuple(sub(own, scale(x, moved)) for own, x in zip(scaled, self.u, strict=True))
+
+    @property
+    def blocks(self) -> tuple[Matrix, ...]:
+        """All its numbers, as matrices."""
+        return (self.residual,), self.scale, (self.u,), ((self.ratio,),)
+
+    @staticmethod
+    def of(blocks: Sequence[Matrix]) -> Weighted:
+        """What :attr:`blocks` were made of."""
+        (residual,), scale, (u,), ((ratio,),) = blocks
+        return Weighted(residual, scale, u, ratio)
 
 
 MODES: Mapping[str, Mode] = {
@@ -145,26 +166,26 @@ class Weighting:
         """The loss's parameters in order."""
         return tuple(given[name][0] for name in (self.loss.parameters if self.loss else ()))
 
+    def weighted(self, given: Mapping[str, Vector], r: Vector) -> Weighted:
+        """The residual, whitened and weighed. ``given`` holds the keywords' numbers."""
+        S = self.noise.matrix(given[KEYWORD], len(r)) if self.noise else eye(len(r))
+        u = matvec(S, r)
+        if not self.loss:
+            return Weighted(u, S, u, 0)
+        weighed = self.mode.weigh(self.loss, self.parameters(given), u)
+        # the root goes into S, which has fewer entries than the Jacobians
+        return Weighted(weighed.residual, matscale(weighed.root, S), u, weighed.ratio)
+
     def apply(
         self, given: Mapping[str, Vector], r: Vector, blocks: Blocks[K]
     ) -> tuple[Vector, dict[K, Matrix]]:
         """The residual and its Jacobians, whitened and weighed. ``given`` holds the keywords' numbers."""
-        m = len(r)
-        S = self.noise.matrix(given[KEYWORD], m) if self.noise else eye(m)
-        u = matvec(S, r)
-        if not self.loss:
-            return u, {key: matmul(S, J) for key, J in blocks.items()}
-        weighed = self.mode.weigh(self.loss, self.parameters(given), u)
-        # the root goes into S, which has fewer entries than the Jacobians
-        scaled = matscale(weighed.root, S)
-        return weighed.residual, {
-            key: _along(u, weighed.ratio, matmul(scaled, J)) for key, J in blocks.items()
-        }
+        weighted = self.weighted(given, r)
+        return weighted.residual, {key: weighted.jacobian(J) for key, J in blocks.items()}
 
     def cost(self, given: Mapping[str, Vector], r: Vector) -> Scalar:
         """1/2 rho(|S r|^2)."""
-        none: dict[str, Matrix] = {}
-        u, _ = Weighting(self.noise, None, self.mode).apply(given, r, none)
+        u = Weighting(self.noise, None, self.mode).weighted(given, r).residual
         s = dot(u, u)
         return 0.5 * (self.loss.rho(s, *self.parameters(given)) if self.loss else s)
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from .program import CONDITIONS, FREE, Program
+from .program import CONDITIONS, Program
 from .rewrite import use_counts
 
 KINDS = ("add", "mul", "div", "sqrt", "call", "select", "sign")
+_SUMS = ("add", "sub")
 _KIND: Mapping[str, str] = {
-    **dict.fromkeys(("add", "sub"), "add"),
+    **dict.fromkeys(_SUMS, "add"),
     **{op: op for op in ("mul", "div", "sqrt")},
     **dict.fromkeys(("select", *sorted(CONDITIONS)), "select"),
     **dict.fromkeys(("neg", "abs"), "sign"),
@@ -23,12 +24,14 @@ def kinds(program: Program) -> dict[str, int]:
     ``program.operations``. Besides, ``fused`` tells for how many pairs of a product and a sum a machine with
     fused multiply-add needs one instruction only: a b + c, where the product has no other use.
     """
-    counts: dict[str, int] = dict.fromkeys((*KINDS, "fused"), 0)
-    uses = use_counts(program)
-    for ins in program.code:
-        if ins.op not in FREE:
-            kind = _KIND.get(ins.op, "call")
-            counts[kind] += 1
-            inner = kind == "add" and any(program.code[a].op == "mul" and uses[a] == 1 for a in ins.args)
-            counts["fused"] += inner
-    return counts
+    counts: dict[str, int] = dict.fromkeys(KINDS, 0)
+    for op, count in program.op_counts().items():
+        counts[_KIND.get(op, "call")] += count
+    return {**counts, "fused": fused(program)}
+
+
+def fused(program: Program) -> int:
+    """The count of that name."""
+    code, uses = program.code, use_counts(program)
+    single = [op == "mul" and n == 1 for (op, _, _), n in zip(code, uses, strict=True)]
+    return [single[args[0]] or single[args[1]] for op, args, _ in code if op in _SUMS].count(True)

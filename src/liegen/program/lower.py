@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import islice
 from typing import Any
 
 from liegen.errors import DefinitionError
@@ -23,6 +26,8 @@ _METHODS: Mapping[str, str] = {
     **{op: op for op in ("fmin", "fmax", "if_else_zero", "lt", "le", "eq", "ne")},
     **{"pow": "power", "constpow": "power", "not": "negation", "and": "conjunction", "or": "disjunction"},
 }
+#: The name of the output that is beside a program.
+BESIDE = ""
 #: CasADi's functions of one number -> the program's.
 _FUNCTIONS: Mapping[str, str] = {
     "fabs": "abs",
@@ -35,12 +40,15 @@ def lower(
     inputs: Sequence[tuple[Port, Sequence[Any]]],
     outputs: Sequence[tuple[Port, Sequence[Any]]],
     requirements: Sequence[tuple[Any, str]] = (),
+    beside: Sequence[Any] = (),
 ) -> Program:
     """Lower SX expressions to a program that computes the same numbers.
 
     ``inputs`` pairs each port with its SX symbols, ``outputs`` each port with its entries, flat and
     row-major: SX scalars, or Python numbers for what is known (0, 1, -1). ``requirements`` pairs an SX
-    condition with its message. At a tie (``fmin(x, x)``, ``fabs(0)``) derivatives are CasADi's: 1/2 each, 0.
+    condition with its message. What is ``beside`` becomes a last output :data:`BESIDE`, without which the
+    program is what it would be (:func:`alone`). At a tie (``fmin(x, x)``, ``fabs(0)``) derivatives are
+    CasADi's: 1/2 each, 0.
 
     Raises DefinitionError for an operation that has no counterpart in generated code, for an expression
     that depends on a symbol that is no input, and for a port whose size is not its number of entries.
@@ -50,26 +58,33 @@ def lower(
             raise DefinitionError(
                 f"{name}: {port.name} has {len(entries)} entries; its shape {port.shape} needs {port.size}"
             )
-    wanted = [*(x for _, entries in outputs for x in entries), *(condition for condition, _ in requirements)]
+    conditions = [condition for condition, _ in requirements]
+    wanted = [*[x for _, entries in outputs for x in entries], *conditions, *beside]
     function = _function(name, [x for _, symbols in inputs for x in symbols], wanted)
     builder = Operations()
-    found = _walk(name, function, builder, sum(port.size for port, _ in inputs))
-    total = sum(port.size for port, _ in outputs)
-    flat = [builder.number(i) for i in found[:total]]
-    conditions = [builder.condition(i) for i in found[total:]]
-    results: list[tuple[int, ...]] = []
-    for port, _ in outputs:
-        results.append(tuple(flat[: port.size]))
-        flat = flat[port.size :]
+    found = iter(_walk(name, function, builder, sum([port.size for port, _ in inputs])))
+    results = [tuple([builder.number(i) for i in islice(found, port.size)]) for port, _ in outputs]
+    required = [Requirement(builder.condition(next(found)), message) for _, message in requirements]
+    ports = [port for port, _ in outputs]
+    if beside:
+        ports.append(Port(BESIDE, (len(beside),)))
+        results.append(tuple([builder.number(i) for i in found]))
     lowered = Program(
         name,
-        tuple(port for port, _ in inputs),
-        tuple(port for port, _ in outputs),
+        tuple([port for port, _ in inputs]),
+        tuple(ports),
         tuple(builder.code),
         tuple(results),
-        tuple(Requirement(c, message) for c, (_, message) in zip(conditions, requirements, strict=True)),
+        tuple(required),
     )
     return dead(lowered).validate()  # CasADi's half selects, merged into whole ones, are left over
+
+
+def alone(program: Program) -> Program:
+    """A lowered program without what is beside it."""
+    if program.outputs[-1].name != BESIDE:
+        return program
+    return dead(replace(program, outputs=program.outputs[:-1], results=program.results[:-1]))
 
 
 def _function(name: str, symbols: list[Any], wanted: list[Any]) -> Any:
@@ -86,12 +101,18 @@ def _function(name: str, symbols: list[Any], wanted: list[Any]) -> Any:
 def _walk(name: str, function: Any, builder: Operations, total: int) -> list[int]:
     """Translate every instruction; CasADi's work vector is reused, so a slot only holds its latest value."""
     inputs = [builder.emit("input", (), float(k)) for k in range(total)]
+    methods = _methods(builder)
     work: dict[int, int] = {}
     found = [0] * function.nnz_out(0)
+    identity, taken, given = function.instruction_id, function.instruction_input, function.instruction_output
     for k in range(function.n_instructions()):
-        op = _NAMES[function.instruction_id(k)]
-        args, out = function.instruction_input(k), function.instruction_output(k)
-        if op == "input":
+        op, args, out = _NAMES[identity(k)], taken(k), given(k)
+        if op in methods:
+            try:
+                work[out[0]] = methods[op](*[work[a] for a in args])
+            except LookupError as problem:
+                raise _refused(name, problem.args[0]) from problem
+        elif op == "input":
             work[out[0]] = inputs[args[1]]
         elif op == "const":
             work[out[0]] = builder.const(float(function.instruction_constant(k)))
@@ -100,20 +121,18 @@ def _walk(name: str, function: Any, builder: Operations, total: int) -> list[int
         elif op in ("assign", "lift"):
             work[out[0]] = work[args[0]]
         else:
-            work[out[0]] = _lowered(name, op, builder, [work[a] for a in args])
+            raise _refused(name, f"the operation {op!r}")
     return found
 
 
-def _lowered(name: str, op: str, build: Operations, args: list[int]) -> int:
-    """The value of one operation; its operands are numbers or conditions."""
-    try:
-        if op in _FUNCTIONS:
-            return build.unary(_FUNCTIONS[op], args[0])
-        if op in _METHODS:
-            return getattr(build, _METHODS[op])(*args)
-        raise LookupError(f"the operation {op!r}")
-    except LookupError as problem:
-        raise DefinitionError(
-            f"{name}: {problem.args[0]} cannot be generated; write it with + - * /, sqrt, sin, cos, tan, "
-            "asin, acos, atan, atan2, exp, log, fabs, fmin, fmax and if_else"
-        ) from problem
+def _methods(build: Operations) -> dict[str, Callable[..., int]]:
+    """What makes instructions of each of CasADi's operations; their operands are numbers or conditions."""
+    unary = {op: partial(build.unary, own) for op, own in _FUNCTIONS.items()}
+    return {**unary, **{op: getattr(build, own) for op, own in _METHODS.items()}}
+
+
+def _refused(name: str, what: str) -> DefinitionError:
+    return DefinitionError(
+        f"{name}: {what} cannot be generated; write it with + - * /, sqrt, sin, cos, tan, asin, acos, atan, "
+        "atan2, exp, log, fabs, fmin, fmax and if_else"
+    )

@@ -109,7 +109,8 @@ class Operations(Builder):
 
     def merged(self, i: int, j: int) -> int | None:
         """The sum of two terms that are zero where the other is not, as one select."""
-        one, two = self.guarded(i), self.guarded(j)
+        one = self.guarded(i)
+        two = self.guarded(j) if one else None
         if one is None or two is None or one[0] != two[0] or one[2] == two[2]:
             return None
         return self.select(one[0], *((one[1], two[1]) if one[2] else (two[1], one[1])))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from liegen.charts import GTSAM, Preset
 from liegen.errors import Site
@@ -74,6 +75,10 @@ class Graph:
 
     def nodes(self) -> tuple[Node, ...]:
         """All nodes that outputs and domain need, operands first."""
+        return self._nodes
+
+    @cached_property
+    def _nodes(self) -> tuple[Node, ...]:
         return topological([node for _, node in self.outputs] + [d.condition for d in self.domain])
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from liegen.charts import form_chart
 from liegen.manifolds import Leaf, Node
@@ -94,7 +94,7 @@ def _product(term: Term) -> Block:
 def _factors(block: Block) -> Iterator[Block]:
     """A block as factors of a longer product: the identity is none."""
     if block.head != "I":
-        yield replace(block, negative=False)
+        yield -block if block.negative else block
 
 
 def _chain_rule(

@@ -79,7 +79,7 @@ class Block:
                 return part.at(node)
             return node.operands[part] if isinstance(part, int) and part >= 0 else node
 
-        return replace(self, parts=tuple(put(part) for part in self.parts))
+        return Block(self.head, tuple([put(part) for part in self.parts]), self.detail, self.negative)
 
 
 Part = Block | int | Node
@@ -166,8 +166,9 @@ class Notation:
             assert not isinstance(part, int), "a place that was never filled"
             parts.append(self.text(part, value) if isinstance(part, Block) else value(part))
         layout = self.layouts[block.head]
-        detailed = replace(layout, pattern=layout.pattern.replace("#d", self.detail(block.detail)))
-        shown = detailed.filled(tuple(parts), self.wrap)
+        if "#d" in layout.pattern:
+            layout = replace(layout, pattern=layout.pattern.replace("#d", self.detail(block.detail)))
+        shown = layout.filled(tuple(parts), self.wrap)
         return replace(shown, text=f"-{shown.text}") if block.negative else shown
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from liegen.algebra.casadi_backend import ca
+from liegen.algebra.casadi_backend import ca, scalar
 from liegen.algebra.linear import plain
 from liegen.differentiate.local import local_blocks
 from liegen.errors import DomainError
@@ -101,8 +101,8 @@ def _finite(coords: Any) -> bool:
 
 def _block_entries(node: Node, result: Any, operands: list[Any]) -> list[float]:
     """All entries of the local Jacobians, by the same rules or CasADi code that the derivation takes."""
-    lifted = [tuple(ca.SX(float(c)) for c in coords) for coords in operands]
-    value = tuple(ca.SX(float(c)) for c in result)
+    lifted = [tuple(scalar(float(c)) for c in coords) for coords in operands]
+    value = tuple(scalar(float(c)) for c in result)
     wanted = [n.manifold.form.dim > 0 for n in node.operands]
     if not any(wanted) or node.manifold.form.dim == 0:
         return []

@@ -26,9 +26,11 @@ Pass = Callable[[Program], Program]
 
 #: Run in turn, again and again until nothing changes.
 PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
+#: What follows in the other rounds: folding shares equal operations too.
+AGAIN = PASSES[1:]
 #: Run once at the end.
 FINAL: tuple[Pass, ...] = (dead, contract, early, schedule)
-#: Rounds of ``PASSES`` at most.
+#: Rounds at most.
 ROUNDS = 4
 
 
@@ -36,14 +38,18 @@ def optimise(program: Program) -> tuple[Program, tuple[tuple[str, int], ...]]:
     """Run all passes; return the program and a row (name, operations left) per pass that ran.
 
     The first row is the program as it came. A pass does not run again on what it returned itself. Every
-    result is validated.
+    result that differs from what the pass was given is validated.
     """
     rows = [("lower", program.operations)]
-    returned: dict[str, Program] = {}
-    for step in (*PASSES * ROUNDS, *FINAL):
+    version = 0  # of the program; the one that each pass returned
+    returned: dict[str, int] = {}
+    for step in (*PASSES, *AGAIN * (ROUNDS - 1), *FINAL):
         name = step.__name__
-        if name in returned and returned[name] == program:
+        if returned.get(name) == version:
             continue
-        program = returned[name] = step(program).validate()
-        rows.append((name, program.operations))
+        found, operations = step(program), rows[-1][1]
+        if found != program:
+            program, version, operations = found.validate(), version + 1, found.operations
+        returned[name] = version
+        rows.append((name, operations))
     return program, tuple(rows)

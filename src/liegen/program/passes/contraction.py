@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from liegen.program.kinds import kinds
+from liegen.program.kinds import fused
 from liegen.program.program import Program
 
 from .dead_code import dead
@@ -21,6 +21,9 @@ def contract(program: Program) -> Program:
     for n, own in work.sums.items():
         if len(own) > 2:
             work.sums[n] = sorted(own, key=work.contractible)
+    before = fused(program)
+    if work.fused() <= before:  # without looking further
+        return program
     found = signs(work.emitted())
-    better = kinds(found)["fused"] > kinds(program)["fused"]
+    better = fused(found) > before
     return found if better and found.operations <= program.operations else program

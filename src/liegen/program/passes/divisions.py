@@ -27,6 +27,8 @@ def reciprocals(program: Program) -> Program:
         b for b, found in numerators.items()
         if len(found) >= WORTH or (len(found) > 1 and any(_one(program, a) for a in found))
     }  # fmt: skip
+    if not shared:
+        return program
     builder = Builder()
     place: list[int] = []
     inverse: dict[int, int] = {}

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from liegen.program.program import Instruction, Program
+from liegen.program.program import Instruction, Program, instruction
 from liegen.program.rewrite import rebuilt, use_counts
 
 from .dead_code import dead
 from .folding import power_of_two
+
+_SUMS = frozenset({"add", "sub", "select"})
 
 
 def factor(program: Program) -> Program:
@@ -21,28 +23,35 @@ def factor(program: Program) -> Program:
     place: list[int] = []
     before = use_counts(program)
 
-    def emit(op: str, args: tuple[int, ...], value: float, used: int) -> int:
-        code.append(Instruction(op, args, value))
+    def emit(op: str, args: tuple[int, ...], used: int) -> int:
+        code.append(Instruction(op, args))
         uses.append(used)
         return len(code) - 1
 
-    for k, ins in enumerate(program.code):
-        op, args = ins.op, tuple([place[a] for a in ins.args])
-        found = None
-        if op in ("add", "sub", "select"):
-            x, y = args[-2:]
+    def keep(k: int) -> int:
+        op, args, value = ins = program.code[k]
+        now = tuple([place[a] for a in args])
+        code.append(ins if now == args else instruction((op, now, value)))
+        uses.append(before[k])
+        return len(code) - 1
+
+    for k, (op, operands, _) in enumerate(program.code):
+        found = hoisted = None
+        if op in _SUMS:
+            x, y = place[operands[-2]], place[operands[-1]]
             if x != y and uses[x] == uses[y] == 1 and code[x].op == code[y].op:
                 found = _common(code, op, code[x], code[y])
+        elif op == "mul":
+            hoisted = _hoisted(code, uses, place[operands[0]], place[operands[1]])
         if found:
-            op, common, a, b = found
-            inner = emit(op, (*args[:-2], a, b), 0.0, 1)
-            outer = code[args[-1]].op
-            place.append(emit(outer, (inner, common), 0.0, before[k]))
-        elif op == "mul" and (hoisted := _hoisted(code, uses, *args)):
+            inner, common, a, b = found
+            shared = emit(inner, (*[place[c] for c in operands[:-2]], a, b), 1)
+            place.append(emit(code[place[operands[-1]]].op, (shared, common), before[k]))
+        elif hoisted:
             scale, a, b = hoisted
-            place.append(emit("mul", (scale, emit("mul", (a, b), 0.0, 1)), 0.0, before[k]))
+            place.append(emit("mul", (scale, emit("mul", (a, b), 1)), before[k]))
         else:
-            place.append(emit(op, args, ins.value, before[k]))
+            place.append(keep(k))
     return dead(rebuilt(program, code, place))
 
 

@@ -24,12 +24,21 @@ def fold(program: Program) -> Program:
     """
     state = _Folding(Builder())
     builder, place = state.builder, list[int]()
+    code = builder.code
     for ins in program.code:
-        args = tuple([place[a] for a in ins.args])
-        rule = _RULES.get(ins.op)
-        found = rule(state, ins.op, args) if rule else None
-        place.append(builder.share(ins.op, args, ins.value) if found is None else found)
+        op, operands, _ = ins
+        found = None
+        if op in _BINARY:  # two different numbers, none of them a constant, have no rule
+            a, b = place[operands[0]], place[operands[1]]
+            if a == b or code[a].op == "const" or code[b].op == "const":
+                found = _RULES[op](state, op, (a, b))
+        elif op in _RULES:
+            found = _RULES[op](state, op, tuple([place[a] for a in operands]))
+        place.append(builder.moved(ins, place) if found is None else found)
     return dead(rebuilt(program, builder.code, place))
+
+
+_BINARY = frozenset({"add", "sub", "mul", "div"})
 
 
 @dataclass(frozen=True)

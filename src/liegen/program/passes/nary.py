@@ -6,6 +6,7 @@ subexpression elimination, IEEE Trans. CAD 25(10), 2006: again and again the pai
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from heapq import heappop, heappush
@@ -26,21 +27,23 @@ def pairs_of(terms: list[Term]) -> Iterator[Pair]:
 
 @dataclass
 class Pairs:
-    """Which groups (sums, or products) hold which pairs."""
+    """Which groups (sums, or products) hold which pairs; those that one alone ever holds are left out."""
 
     groups: dict[int, list[Term]]
     holders: dict[Pair, dict[int, None]] = field(default_factory=dict[Pair, dict[int, None]])
     heap: list[tuple[int, Pair]] = field(default_factory=list[tuple[int, Pair]])
 
     def __post_init__(self) -> None:
+        counts = Counter([pair for terms in self.groups.values() for pair in set(pairs_of(terms))])
+        self.holders.update({pair: {} for pair, count in counts.items() if count > 1})
         for group in self.groups:
             self.enter(group)
 
-    def enter(self, group: int) -> None:
-        """Take note of a group's pairs."""
+    def enter(self, group: int, new: int = -1) -> None:
+        """Take note of a group's pairs; those with the operand ``new`` were not there before."""
         for pair in pairs_of(self.groups[group]):
-            found = self.holders.setdefault(pair, {})
-            if group not in found:
+            found = self.holders.setdefault(pair, {}) if pair[1] == new else self.holders.get(pair)
+            if found is not None and group not in found:
                 found[group] = None
                 if len(found) > 1:
                     heappush(self.heap, (-len(found), pair))
@@ -48,7 +51,8 @@ class Pairs:
     def leave(self, group: int) -> None:
         """Forget a group's pairs."""
         for pair in pairs_of(self.groups[group]):
-            self.holders[pair].pop(group, None)
+            if pair in self.holders:
+                self.holders[pair].pop(group, None)
 
     def best(self) -> tuple[Pair, list[int]] | None:
         """The pair that most groups have, at least two, and these groups; the smallest one among equals."""
@@ -75,7 +79,7 @@ class Pairs:
                 first, last = min(i, j), max(i, j)
                 terms[first] = (new, sign)
                 del terms[last]
-            self.enter(group)
+            self.enter(group, new)
 
 
 def _position(terms: list[Term], a: int, b: int, relative: int) -> tuple[int, int] | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from heapq import heappop, heappush
 
-from liegen.program.program import FREE, Instruction, Program
-from liegen.program.rewrite import rebuilt, roots
+from liegen.program.program import FREE, Instruction, Program, instruction
+from liegen.program.rewrite import needed, rebuilt, roots
 
 
 def schedule(program: Program) -> Program:
@@ -16,59 +16,59 @@ def schedule(program: Program) -> Program:
     right before their first use, requirements come first in the depth-first order. Reorders only, what
     nothing needs is left out; :func:`live_values` never grows. Deterministic, idempotent.
     """
-    orders = (range(len(program.code)), _depth_first(program), _greedy(program))
-    return min([_placed(program, order) for order in orders], key=live_values)
+    live = needed(program)
+    whole = [k for k, (op, _, _) in enumerate(program.code) if live[k] and op not in FREE]
+    orders = (whole, _depth_first(program), _greedy(program, live))
+    return _placed(program, min(orders, key=lambda order: _most_waiting(program, order)))
 
 
 def live_values(program: Program) -> int:
     """Largest number of computed values that wait for a later use; inputs and constants are free."""
+    order = [k for k, (op, _, _) in enumerate(program.code) if op not in FREE]
+    return _most_waiting(program, order)
+
+
+def _most_waiting(program: Program, order: Sequence[int]) -> int:
+    """:func:`live_values` of the operations in this order."""
     code = program.code
-    last = list(range(len(code)))
-    for k, ins in enumerate(code):
-        for a in ins.args:
-            last[a] = k
+    last = [-1] * len(code)  # the operation that uses a value last; inputs and constants count as used
+    for k, (op, _, _) in enumerate(code):
+        last[k] = -1 if op in FREE else k
+    for k in order:
+        for a in code[k].args:
+            if last[a] >= 0:
+                last[a] = k
     live = most = 0
-    for k, ins in enumerate(code):
-        if ins.op not in FREE:
-            # a result may take the place of an operand that is used for the last time
-            live += 1 - sum([last[a] == k and code[a].op not in FREE for a in dict.fromkeys(ins.args)])
-            most = max(most, live)
-            live -= last[k] == k
+    for k in order:
+        live += 1
+        for a in code[k].args:  # a result may take the place of an operand that is used for the last time
+            if last[a] == k:
+                live -= 1
+                last[a] = -1
+        if live > most:
+            most = live
+        if last[k] == k:
+            live -= 1
     return most
 
 
 def _placed(program: Program, order: Sequence[int]) -> Program:
-    """The program in this order of its instructions, inputs and constants where they are first used."""
+    """The operations in this order, inputs and constants where they are first used."""
     code: list[Instruction] = []
     place = [-1] * len(program.code)
 
     def put(k: int) -> None:
-        ins = program.code[k]
-        for a in ins.args:
+        op, args, value = program.code[k]
+        for a in args:
             if place[a] < 0:
                 put(a)  # only inputs and constants are not there yet
         place[k] = len(code)
-        code.append(Instruction(ins.op, tuple([place[a] for a in ins.args]), ins.value))
+        code.append(instruction((op, tuple([place[a] for a in args]), value)))
 
-    needed = _needed(program)
-    for k in order:
-        if place[k] < 0 and needed[k] and program.code[k].op not in FREE:
-            put(k)
-    for k in roots(program):
+    for k in (*order, *roots(program)):
         if place[k] < 0:
             put(k)
     return rebuilt(program, code, place)
-
-
-def _needed(program: Program) -> list[bool]:
-    needed = [False] * len(program.code)
-    for k in roots(program):
-        needed[k] = True
-    for k in range(len(program.code) - 1, -1, -1):
-        if needed[k]:
-            for a in program.code[k].args:
-                needed[a] = True
-    return needed
 
 
 def _depth_first(program: Program) -> list[int]:
@@ -78,41 +78,47 @@ def _depth_first(program: Program) -> list[int]:
     trees, a heuristic where values are shared.
     """
     need = _registers(program)
+    code = program.code
     order: list[int] = []
-    done = [False] * len(program.code)
+    done = [op in FREE for op, _, _ in code]
     for root in (*(r.condition for r in program.requirements), *roots(program)):
         stack = [root]
         while stack:
             k = stack[-1]
-            open_ = [a for a in program.code[k].args if not done[a]]
-            if done[k] or not open_:
+            if done[k]:
                 stack.pop()
-                if not done[k]:
-                    done[k] = True
-                    order.append(k)
-            else:  # the last one pushed comes first: the highest need, of equal ones the left operand
+                continue
+            open_ = [a for a in code[k].args if not done[a]]
+            if not open_:
+                stack.pop()
+                done[k] = True
+                order.append(k)
+            elif len(open_) == 2:  # the last one pushed comes first: the highest need, of equals the left one
+                a, b = open_
+                stack += open_ if need[a] < need[b] else (b, a)
+            else:
                 open_.reverse()
                 open_.sort(key=need.__getitem__)
-                stack.extend(open_)
+                stack += open_
     return order
 
 
 def _registers(program: Program) -> list[int]:
     """Registers that each instruction's operands need, were they a tree (Sethi-Ullman numbers)."""
     need: list[int] = []
-    for ins in program.code:
-        operands = sorted([need[a] for a in ins.args], reverse=True)
-        need.append(max([ins.op not in FREE, *[n + k for k, n in enumerate(operands)]]))
+    for op, args, _ in program.code:
+        operands = sorted([need[a] for a in args], reverse=True)
+        need.append(max([op not in FREE, *[n + k for k, n in enumerate(operands)]]))
     return need
 
 
-def _greedy(program: Program) -> list[int]:
+def _greedy(program: Program, used: Sequence[int]) -> list[int]:
     """From the last instruction to the first, always one that makes the fewest operands wait for it."""
-    code, needed = program.code, _needed(program)
+    code = program.code
     operands = [[a for a in dict.fromkeys(ins.args) if code[a].op not in FREE] for ins in code]
     users: list[list[int]] = [[] for _ in code]
     for k, found in enumerate(operands):
-        for a in found if needed[k] else ():
+        for a in found if used[k] else ():
             users[a].append(k)
     left = [len(found) for found in users]  # users that are not placed yet
     live = [False] * len(code)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from liegen.program.program import Program, Requirement
@@ -9,7 +10,7 @@ from liegen.program.rewrite import Builder
 
 from .dead_code import dead
 from .nary import Pairs, Term
-from .orientation import Kind, Node
+from .orientation import Node
 from .sign_sharing import signed, signs
 
 #: Longest sum or product that is taken apart.
@@ -43,7 +44,7 @@ class Work:
 
     def __init__(self, program: Program) -> None:
         self.program = program
-        self.nodes, self.place = signed(program)
+        self.nodes, _, self.place = signed(program)
         self.results = [self.place[i] for indices in program.results for i in indices]
         self.conditions = [self.place[r.condition][0] for r in program.requirements]
         self.uses = [0] * len(self.nodes)
@@ -52,33 +53,24 @@ class Work:
                 self.uses[a] += 1
         for n in (*[n for n, _ in self.results], *self.conditions):
             self.uses[n] += 1
-        self.sums = self.flat(Kind.SUM)
-        self.products = self.flat(Kind.PRODUCT)
+        leaves = [not node.args for node in self.nodes]
+        selects = [node.op == "select" for node in self.nodes]
+        # what is exact stays whole, and what keeps others from overflow
+        self.sums = self.flat("add", lambda a, b: leaves[a] and leaves[b])
+        self.products = self.flat("mul", lambda a, b: selects[a] or selects[b])
 
-    def kind(self, n: int) -> Kind | None:
-        """SUM or PRODUCT (no quotient) where the node may be taken apart."""
-        node = self.nodes[n]
-        return node.kind if node.op in ("add", "mul") else None
-
-    def whole(self, n: int) -> bool:
-        """Whether the node must stay as it is: it is exact, or keeps others from overflow."""
-        node = self.nodes[n]
-        if node.kind is Kind.SUM:
-            return all(self.nodes[a].kind is Kind.LEAF for a in node.args)
-        return any(self.nodes[a].kind is Kind.SELECT for a in node.args)
-
-    def flat(self, kind: Kind) -> dict[int, list[Term]]:
+    def flat(self, op: str, whole: Callable[[int, int], bool]) -> dict[int, list[Term]]:
         """Node -> its operands, inner sums (or products) with no other use taken apart."""
         found: dict[int, list[Term]] = {}
+        uses = self.uses
         for n, node in enumerate(self.nodes):
-            if self.kind(n) is not kind or self.whole(n):
+            if node.op != op or whole(*node.args):
                 continue
             own: list[Term] = []
             for a, s in zip(node.args, node.signs, strict=True):
-                inner = found.get(a)
-                if inner is not None and self.uses[a] == 1 and len(own) + len(inner) < LONGEST:
-                    del found[a]
-                    own += [(b, s * t) for b, t in inner]
+                if a in found and uses[a] == 1 and len(own) + len(found[a]) < LONGEST:
+                    inner = found.pop(a)
+                    own += inner if s > 0 else [(b, -t) for b, t in inner]
                 else:
                     own.append((a, s))
             found[n] = own
@@ -94,37 +86,41 @@ class Work:
         """Whether a term of a sum is a product with no other use."""
         return self.nodes[term[0]].op == "mul" and self.uses[term[0]] == 1
 
+    def fused(self) -> int:
+        """For how many pairs of a product and a sum one instruction can do, at most."""
+        products = [(len(own), sum(map(self.contractible, own))) for own in self.sums.values()]
+        return sum([n - (n == terms) for terms, n in products])
+
     def improve(self) -> bool:
         """Share pairs, then take out factors; return whether anything was found."""
         start = len(self.nodes)
-        self.share(self.products, Kind.PRODUCT, "mul")
-        self.share(self.sums, Kind.SUM, "add")
+        self.share(self.products, "mul")
+        self.share(self.sums, "add")
         for n in list(self.sums):
             while self.distribute(n):
                 pass
         return len(self.nodes) > start
 
-    def share(self, groups: dict[int, list[Term]], kind: Kind, op: str) -> None:
+    def share(self, groups: dict[int, list[Term]], op: str) -> None:
         """Make a node of each pair that several sums, or products, have."""
         pairs = Pairs(groups)
         while found := pairs.best():
             (a, b, relative), holders = found
-            new = self.add(Node(kind, op, 0.0, (a, b), (1, relative), 1))
+            new = self.add(Node(op, 0.0, (a, b), (1, relative)))
             self.uses[new] = len(holders)
             pairs.replace((a, b, relative), holders, new)
 
     def distribute(self, n: int) -> bool:
         """Take the factor that most terms of a sum have out of them."""
         own = self.sums[n]
+        if not self.common(own):
+            return False
         holders: dict[int, list[int]] = {}
         for k, (m, _) in enumerate(own):
             if self.uses[m] == 1:
                 for factor in dict.fromkeys([f for f, _ in self.products.get(m, ())]):
                     holders.setdefault(factor, []).append(k)
-        best = max(holders.items(), key=lambda item: len(item[1]), default=None)
-        if best is None or len(best[1]) < 2:
-            return False
-        factor, places = best
+        factor, places = max(holders.items(), key=lambda item: len(item[1]))
         inner: list[Term] = []
         for k in places:
             m, s = own[k]
@@ -135,14 +131,25 @@ class Work:
             else:
                 self.products[m] = rest
                 inner.append((m, s))
-        total = self.add(Node(Kind.SUM, "add", 0.0, (), (), 1))
-        scaled = self.add(Node(Kind.PRODUCT, "mul", 0.0, (), (), 1))
+        total = self.add(Node("add", 0.0, (), ()))
+        scaled = self.add(Node("mul", 0.0, (), ()))
         self.sums[total], self.products[scaled] = inner, [(factor, 1), (total, 1)]
         self.uses[total] = self.uses[scaled] = 1
         own[places[0]] = (scaled, 1)
         for k in reversed(places[1:]):
             del own[k]
         return True
+
+    def common(self, own: list[Term]) -> bool:
+        """Whether two terms of a sum, with no other use, have a factor in common."""
+        seen: set[int] = set()
+        for m, _ in own:
+            if self.uses[m] == 1 and m in self.products:
+                factors = {f for f, _ in self.products[m]}
+                if not seen.isdisjoint(factors):
+                    return True
+                seen |= factors
+        return False
 
     def operands(self, n: int) -> list[Term]:
         """What a node is made of now."""
@@ -177,16 +184,20 @@ class _Emission:
 
     def reach(self, root: int) -> None:
         """Emit a node after everything that it needs."""
+        index = self.index
         stack = [root]
         while stack:
             n = stack[-1]
-            missing = [m for m, _ in reversed(self.work.operands(n)) if m not in self.index]
-            if missing and n not in self.index:
+            if n in index:
+                stack.pop()
+                continue
+            own = self.work.operands(n)
+            missing = [m for m, _ in reversed(own) if m not in index]
+            if missing:
                 stack += missing
             else:
                 stack.pop()
-                if n not in self.index:
-                    self.index[n] = self.emit(n)
+                index[n] = self.emit(n, own)
 
     def value(self, n: int, s: int) -> int:
         """The instruction that is s times the node."""
@@ -196,17 +207,17 @@ class _Emission:
             return i
         return self.builder.const(-node.value) if node.op == "const" else self.builder.share("neg", (i,))
 
-    def emit(self, n: int) -> Term:
+    def emit(self, n: int, own: list[Term]) -> Term:
         """The node's own operations."""
-        node, own = self.work.nodes[n], self.work.operands(n)
-        if node.kind is Kind.LEAF:
+        node = self.work.nodes[n]
+        if not own:
             return self.builder.share(node.op, (), node.value), 1
-        known = [(self.index[m][0], s * self.index[m][1]) for m, s in own]
-        if node.kind is Kind.SUM:
-            return _sum(self.builder, known)
+        if node.op == "add":
+            return _sum(self.builder, [(i, s * t) for s, (i, t) in [(s, self.index[m]) for m, s in own]])
         if n in self.work.products:
-            i, sign = known[0]
-            for j, t in known[1:]:
+            i, sign = self.index[own[0][0]]
+            for m, _ in own[1:]:
+                j, t = self.index[m]
                 i, sign = self.builder.share("mul", (i, j)), sign * t
             return i, sign
         return self.builder.share(node.op, tuple([self.value(m, s) for m, s in own])), 1

@@ -11,5 +11,5 @@ def cse(program: Program) -> Program:
     builder = Builder()
     place: list[int] = []
     for ins in program.code:
-        place.append(builder.share(ins.op, tuple([place[a] for a in ins.args]), ins.value))
+        place.append(builder.moved(ins, place))
     return rebuilt(program, builder.code, place)
