@@ -119,7 +119,7 @@ class Elimination:
 
     def numbers(self, v: int) -> int:
         """How many the vertex has; 0 for a parameter."""
-        return max((_rows(chain) for chain in self.into.get(v, {}).values()), default=0)
+        return max((len(chain[0]) for chain in self.into.get(v, {}).values()), default=0)
 
     def cost(self, v: int) -> int:
         """About how many scalar products the elimination of v takes, dense blocks taken for granted."""

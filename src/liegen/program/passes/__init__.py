@@ -11,7 +11,6 @@ from collections.abc import Callable
 
 from liegen.program.program import Program
 
-from .arrival import early
 from .contraction import contract
 from .dead_code import dead
 from .divisions import reciprocals
@@ -29,7 +28,7 @@ PASSES: tuple[Pass, ...] = (cse, fold, signs, terms, factor, reciprocals)
 #: What follows in the other rounds: folding shares equal operations too.
 AGAIN = PASSES[1:]
 #: Run once at the end.
-FINAL: tuple[Pass, ...] = (dead, contract, early, schedule)
+FINAL: tuple[Pass, ...] = (dead, contract, schedule)
 #: Rounds at most.
 ROUNDS = 4
 

@@ -1,29 +1,38 @@
-"""The order of sums, for machines with fused multiply-add."""
+"""The order within sums and products, for machines with fused multiply-add."""
 
 from __future__ import annotations
 
 from liegen.program.kinds import fused
 from liegen.program.program import Program
 
+from .arrival import critical_path, ready
 from .dead_code import dead
 from .shared_terms import Work
 from .sign_sharing import signs
 
 
 def contract(program: Program) -> Program:
-    """Let sums begin with what is no product, so that each product goes with an addition as a b + c.
+    """Let sums begin with what is no product, and take first what is ready first; products too.
 
     e + a b + c d is two instructions with fused multiply-add, a b + c d + e is three. The program is
-    returned where no more pairs are found, or where there would be more operations.
+    returned where there would be no fewer instructions and no shorter longest chain of them, or more
+    operations.
     """
     program = dead(program)
     work = Work(program)
+    before, longest = fused(program), critical_path(program)
+    times = ready(work)
+    if work.fused() <= before and max(times[n] for n, _ in work.results) >= longest:
+        return program  # without looking further
     for n, own in work.sums.items():
         if len(own) > 2:
-            work.sums[n] = sorted(own, key=work.contractible)
-    before = fused(program)
-    if work.fused() <= before:  # without looking further
-        return program
+            work.sums[n] = sorted(own, key=lambda term: (work.contractible(term), times[term[0]]))
+    for n, own in work.products.items():
+        if len(own) > 2:
+            work.products[n] = sorted(own, key=lambda term: times[term[0]])
     found = signs(work.emitted())
-    better = fused(found) > before
-    return found if better and found.operations <= program.operations else program
+    if found.operations > program.operations:
+        return program
+    instructions = found.operations - fused(found), program.operations - before
+    better = (instructions[0], critical_path(found)) < (instructions[1], longest)
+    return found if better else program
