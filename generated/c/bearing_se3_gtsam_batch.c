@@ -29,69 +29,69 @@ static void block_value(
     const lanes z_x = z[0];
     const lanes z_y = z[1];
     const lanes z_z = z[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = x_x - y_x;
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = 2.0 * x_qy;
+    const lanes t2 = t0 * x_qw;
+    const lanes t3 = x_qx * t1;
+    const lanes t4 = t1 * x_qw;
     const lanes t5 = t0 * x_qx;
-    const lanes t6 = t2 * x_qw;
-    const lanes t7 = x_y - y_y;
-    const lanes t8 = t2 * x_qx;
-    const lanes t9 = t0 * x_qw;
-    const lanes t10 = x_z - y_z;
-    const lanes t11 = (t8 - t9) * t10 + ((t1 - t3) * t4 + (t5 + t6) * t7);
-    const lanes t12 = 2.0 * x_qx;
-    const lanes t13 = x_qx * t12;
-    const lanes t14 = t4 * (t5 - t6) + t7 * (1.0 - t3 - t13);
-    const lanes t15 = x_qy * t2;
-    const lanes t16 = x_qw * t12;
-    const lanes t17 = t10 * (t15 + t16) + t14;
-    const lanes t18 = t10 * (t13 - t1) + (t7 * (t16 - t15) - t4 * (t8 + t9));
-    const lanes t19 = t18 * t18 + (t11 * t11 + t17 * t17);
-    const lanes_mask t20 = t19 < 1.1830521861667747e-271;
-    const lanes_mask t21 = 8.452712498170644e+270 < t19;
-    const lanes t22 = lanes_select(t21, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
-    const lanes t23 = lanes_select(t20, lanes_of(-4.149515568880993e+180), t22);
-    const lanes t24 = t11 * t23;
-    const lanes t25 = t17 * t23;
+    const lanes t6 = 2.0 * x_qx;
+    const lanes t7 = x_qw * t6;
+    const lanes t8 = t0 * x_qy;
+    const lanes t9 = x_qx * t6;
+    const lanes t10 = 1.0 - x_qy * t1;
+    const lanes t11 = x_qz * t0;
+    const lanes t12 = x_y - y_y;
+    const lanes t13 = x_z - y_z;
+    const lanes t14 = x_x - y_x;
+    const lanes t15 = t14 * (t2 - t3) - t13 * (t8 + t7);
+    const lanes t16 = (t10 - t11) * t14 + ((t5 - t4) * t13 + (t3 + t2) * t12);
+    const lanes t17 = t13 * (t10 - t9) + (t14 * (t5 + t4) + t12 * (t8 - t7));
+    const lanes t18 = t12 * (t11 + (t9 - 1.0)) + t15;
+    const lanes t19 = t18 * t18 + (t17 * t17 + t16 * t16);
+    const lanes_mask t20 = 8.452712498170644e+270 < t19;
+    const lanes t21 = lanes_select(t20, lanes_of(2.409919865102884e-181), lanes_of(1.0));
+    const lanes_mask t22 = t19 < 1.1830521861667747e-271;
+    const lanes t23 = lanes_select(t22, lanes_of(4.149515568880993e+180), t21);
+    const lanes t24 = t17 * t23;
+    const lanes t25 = t16 * t23;
     const lanes t26 = t18 * t23;
-    const lanes t27 = 1.0 / lanes_sqrt(t26 * t26 + (t24 * t24 + t25 * t25));
-    const lanes t28 = t25 * t27;
-    const lanes t29 = lanes_abs(t28);
+    const lanes t27 = -1.0 / lanes_sqrt(t26 * t26 + (t24 * t24 + t25 * t25));
+    const lanes t28 = t24 * t27;
+    const lanes t29 = t25 * t27;
     const lanes t30 = t26 * t27;
-    const lanes t31 = lanes_abs(t30);
-    const lanes_mask t32 = t29 <= t31;
-    const lanes t33 = lanes_select(t32, t30, t28);
-    const lanes t34 = t24 * t27;
-    const lanes t35 = lanes_abs(t34);
-    const lanes_mask t36 = (t35 <= t29) & (t35 <= t31);
-    const lanes t37 = lanes_select(t36, t30, lanes_select(t32, lanes_of(0.0), t34));
-    const lanes t38 = lanes_select(t36, lanes_of(0.0), t33 * t33) + t37 * t37;
-    const lanes t39 = lanes_select(t36, -t28, lanes_select(t32, t34, lanes_of(0.0)));
-    const lanes t40 = 1.0 / lanes_sqrt(t39 * t39 + t38);
-    const lanes t41 = t37 * t40;
-    const lanes t42 = t39 * t40;
-    const lanes t43 = t33 * t40;
-    const lanes t44 = z_y * (lanes_select(t36, lanes_of(0.0), t30 * t43) + t34 * t42);
-    const lanes t45 = z_z * (t34 * t41 + lanes_select(t36, lanes_of(0.0), t28 * t43));
-    const lanes t46 = t45 + (z_x * (t30 * t41 - t28 * t42) + t44);
-    const lanes t47 = z_y * t41 - lanes_select(t36, lanes_of(0.0), z_x * t43);
-    const lanes t48 = t47 - z_z * t42;
-    const lanes t49 = t48 * t48 + t46 * t46;
-    const lanes_mask t50 = t49 < 1.1830521861667747e-271;
-    const lanes_mask t51 = 8.452712498170644e+270 < t49;
-    const lanes t52 = lanes_select(t51, lanes_of(2.409919865102884e-181), lanes_of(1.0));
-    const lanes t53 = lanes_select(t50, lanes_of(4.149515568880993e+180), t52);
-    const lanes t54 = t48 * t53;
-    const lanes t55 = t46 * t53;
-    const lanes t56 = lanes_sqrt(t54 * t54 + t55 * t55);
-    const lanes t57 = lanes_select(0.0 < t56, t56, lanes_of(1.0));
-    const lanes t58 = lanes_select(t51, lanes_of(4.149515568880993e+180), lanes_of(1.0));
-    const lanes t59 = t56 * lanes_select(t50, lanes_of(2.409919865102884e-181), t58);
-    const lanes t60 = lanes_atan2(t59, t34 * z_x + t28 * z_y - t30 * z_z);
-    res[0] = t60 * lanes_select(0.0 < t59, t54 / t57, lanes_of(-1.0));
-    res[1] = t60 * (t55 / t57);
+    const lanes t31 = lanes_abs(t28);
+    const lanes t32 = lanes_abs(t29);
+    const lanes t33 = lanes_abs(t30);
+    const lanes_mask t34 = t33 <= t31;
+    const lanes_mask t35 = (t32 <= t33) & (t32 <= t31);
+    const lanes t36 = lanes_select(t35, -t28, lanes_select(t34, lanes_of(0.0), t29));
+    const lanes t37 = lanes_select(t34, t28, t30);
+    const lanes t38 = lanes_select(t35, t30, lanes_select(t34, t29, lanes_of(0.0)));
+    const lanes t39 = lanes_select(t35, lanes_of(0.0), t37 * t37) + t38 * t38;
+    const lanes t40 = 1.0 / lanes_sqrt(t36 * t36 + t39);
+    const lanes t41 = t36 * t40;
+    const lanes t42 = t37 * t40;
+    const lanes t43 = t38 * t40;
+    const lanes t44 = z_z * (t29 * t41 + lanes_select(t35, lanes_of(0.0), t30 * t42));
+    const lanes t45 = z_z * t43 - lanes_select(t35, lanes_of(0.0), z_x * t42);
+    const lanes t46 = z_y * (lanes_select(t35, lanes_of(0.0), t28 * t42) + t29 * t43);
+    const lanes t47 = z_x * (t28 * t41 - t30 * t43) - t44 - t46;
+    const lanes t48 = t45 - z_y * t41;
+    const lanes t49 = t48 * t48 + t47 * t47;
+    const lanes_mask t50 = 8.452712498170644e+270 < t49;
+    const lanes_mask t51 = t49 < 1.1830521861667747e-271;
+    const lanes t52 = lanes_select(t50, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
+    const lanes t53 = lanes_select(t51, lanes_of(-4.149515568880993e+180), t52);
+    const lanes t54 = t47 * t53;
+    const lanes t55 = t48 * t53;
+    const lanes t56 = lanes_select(t50, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t57 = lanes_sqrt(t55 * t55 + t54 * t54);
+    const lanes t58 = lanes_select(0.0 < t57, t57, lanes_of(1.0));
+    const lanes t59 = t57 * lanes_select(t51, lanes_of(2.409919865102884e-181), t56);
+    const lanes t60 = lanes_atan2(t59, t28 * z_z + t29 * z_x - t30 * z_y);
+    res[0] = t60 * lanes_select(0.0 < t59, t55 / t58, lanes_of(-1.0));
+    res[1] = t60 * (t54 / t58);
 }
 
 /* Value and Jacobians of a block. */
@@ -101,7 +101,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -230,59 +232,63 @@ static void block_jacobians(
     const lanes t107 = t100 * t105 - t99 * t106;
     const lanes t108 = t97 * t105 + t93 * t106;
     const lanes t109 = lanes_select(t43, lanes_of(0.0), t102 * t106) - t103 * t105;
-    const lanes t110 = t23 * t98 + (t4 * t104 + t15 * t101);
-    const lanes t111 = 2.0 * y_qy;
-    const lanes t112 = 1.0 - y_qy * t111;
-    const lanes t113 = 2.0 * y_qz;
-    const lanes t114 = y_qz * t113;
-    const lanes t115 = t112 - t114;
-    const lanes t116 = t24 * t98 + (t8 * t104 + t18 * t101);
-    const lanes t117 = t111 * y_qx;
-    const lanes t118 = t113 * y_qw;
-    const lanes t119 = t117 + t118;
-    const lanes t120 = t25 * t98 + (t12 * t104 + t21 * t101);
-    const lanes t121 = t113 * y_qx;
-    const lanes t122 = t111 * y_qw;
-    const lanes t123 = t122 - t121;
-    const lanes t124 = t117 - t118;
-    const lanes t125 = 2.0 * y_qx;
-    const lanes t126 = y_qx * t125;
-    const lanes t127 = t126 + (t114 - 1.0);
-    const lanes t128 = y_qy * t113;
-    const lanes t129 = y_qw * t125;
-    const lanes t130 = t128 + t129;
-    const lanes t131 = t121 + t122;
-    const lanes t132 = t128 - t129;
-    const lanes t133 = t126 - t112;
-    const lanes t134 = t23 * t108 + (t4 * t109 + t15 * t107);
-    const lanes t135 = t24 * t108 + (t8 * t109 + t18 * t107);
-    const lanes t136 = t25 * t108 + (t12 * t109 + t21 * t107);
     res[0] = t71 * t74;
     res[1] = t71 * t75;
-    res_D_x[0] = t26 * t101 - t22 * t98;
-    res_D_x[1] = t14 * t98 - t26 * t104;
-    res_D_x[2] = t22 * t104 - t14 * t101;
-    res_D_x[3] = t104;
-    res_D_x[4] = t101;
-    res_D_x[5] = t98;
-    res_D_x[6] = t26 * t107 - t22 * t108;
-    res_D_x[7] = t14 * t108 - t26 * t109;
-    res_D_x[8] = t22 * t109 - t14 * t107;
-    res_D_x[9] = t109;
-    res_D_x[10] = t107;
-    res_D_x[11] = t108;
-    res_D_y[0] = lanes_of(0.0);
-    res_D_y[1] = lanes_of(0.0);
-    res_D_y[2] = lanes_of(0.0);
-    res_D_y[3] = t120 * t123 - (t110 * t115 + t116 * t119);
-    res_D_y[4] = t116 * t127 - t110 * t124 - t120 * t130;
-    res_D_y[5] = t120 * t133 - (t110 * t131 + t116 * t132);
-    res_D_y[6] = lanes_of(0.0);
-    res_D_y[7] = lanes_of(0.0);
-    res_D_y[8] = lanes_of(0.0);
-    res_D_y[9] = t123 * t136 - (t115 * t134 + t119 * t135);
-    res_D_y[10] = t127 * t135 - t124 * t134 - t130 * t136;
-    res_D_y[11] = t133 * t136 - (t131 * t134 + t132 * t135);
+    if (want_res_D_x) {
+        res_D_x[0] = t26 * t101 - t22 * t98;
+        res_D_x[1] = t14 * t98 - t26 * t104;
+        res_D_x[2] = t22 * t104 - t14 * t101;
+        res_D_x[3] = t104;
+        res_D_x[4] = t101;
+        res_D_x[5] = t98;
+        res_D_x[6] = t26 * t107 - t22 * t108;
+        res_D_x[7] = t14 * t108 - t26 * t109;
+        res_D_x[8] = t22 * t109 - t14 * t107;
+        res_D_x[9] = t109;
+        res_D_x[10] = t107;
+        res_D_x[11] = t108;
+    }
+    if (want_res_D_y) {
+        const lanes t110 = t23 * t98 + (t4 * t104 + t15 * t101);
+        const lanes t111 = 2.0 * y_qy;
+        const lanes t112 = 1.0 - y_qy * t111;
+        const lanes t113 = 2.0 * y_qz;
+        const lanes t114 = y_qz * t113;
+        const lanes t115 = t112 - t114;
+        const lanes t116 = t24 * t98 + (t8 * t104 + t18 * t101);
+        const lanes t117 = t111 * y_qx;
+        const lanes t118 = t113 * y_qw;
+        const lanes t119 = t117 + t118;
+        const lanes t120 = t25 * t98 + (t12 * t104 + t21 * t101);
+        const lanes t121 = t113 * y_qx;
+        const lanes t122 = t111 * y_qw;
+        const lanes t123 = t122 - t121;
+        const lanes t124 = t117 - t118;
+        const lanes t125 = 2.0 * y_qx;
+        const lanes t126 = y_qx * t125;
+        const lanes t127 = t126 + (t114 - 1.0);
+        const lanes t128 = y_qy * t113;
+        const lanes t129 = y_qw * t125;
+        const lanes t130 = t128 + t129;
+        const lanes t131 = t121 + t122;
+        const lanes t132 = t128 - t129;
+        const lanes t133 = t126 - t112;
+        const lanes t134 = t23 * t108 + (t4 * t109 + t15 * t107);
+        const lanes t135 = t24 * t108 + (t8 * t109 + t18 * t107);
+        const lanes t136 = t25 * t108 + (t12 * t109 + t21 * t107);
+        res_D_y[0] = lanes_of(0.0);
+        res_D_y[1] = lanes_of(0.0);
+        res_D_y[2] = lanes_of(0.0);
+        res_D_y[3] = t120 * t123 - (t110 * t115 + t116 * t119);
+        res_D_y[4] = t116 * t127 - t110 * t124 - t120 * t130;
+        res_D_y[5] = t120 * t133 - (t110 * t131 + t116 * t132);
+        res_D_y[6] = lanes_of(0.0);
+        res_D_y[7] = lanes_of(0.0);
+        res_D_y[8] = lanes_of(0.0);
+        res_D_y[9] = t123 * t136 - (t115 * t134 + t119 * t135);
+        res_D_y[10] = t127 * t135 - t124 * t134 - t130 * t136;
+        res_D_y[11] = t133 * t136 - (t131 * t134 + t132 * t135);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -304,7 +310,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 12, n, k);
 }
 
-int liegen_factors_bearing_se3_gtsam_batch(
+LANES_WHOLE int liegen_factors_bearing_se3_gtsam_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -314,7 +320,9 @@ int liegen_factors_bearing_se3_gtsam_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 26 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -339,17 +347,16 @@ int liegen_factors_bearing_se3_gtsam_batch(
             liegen_factors_load(y, 7, k, count, y_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 12, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 12, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

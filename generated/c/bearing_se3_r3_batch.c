@@ -29,70 +29,70 @@ static void block_value(
     const lanes z_x = z[0];
     const lanes z_y = z[1];
     const lanes z_z = z[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = x_x - y_x;
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = 2.0 * x_qy;
+    const lanes t2 = t0 * x_qw;
+    const lanes t3 = x_qx * t1;
+    const lanes t4 = t1 * x_qw;
     const lanes t5 = t0 * x_qx;
-    const lanes t6 = t2 * x_qw;
-    const lanes t7 = x_y - y_y;
-    const lanes t8 = t2 * x_qx;
-    const lanes t9 = t0 * x_qw;
-    const lanes t10 = x_z - y_z;
-    const lanes t11 = (t8 - t9) * t10 + ((t1 - t3) * t4 + (t5 + t6) * t7);
-    const lanes t12 = 2.0 * x_qx;
-    const lanes t13 = x_qx * t12;
-    const lanes t14 = t4 * (t5 - t6) + t7 * (1.0 - t3 - t13);
-    const lanes t15 = x_qy * t2;
-    const lanes t16 = x_qw * t12;
-    const lanes t17 = t10 * (t15 + t16) + t14;
-    const lanes t18 = t10 * (t1 - t13) + (t4 * (t8 + t9) + t7 * (t15 - t16));
-    const lanes t19 = t18 * t18 + (t11 * t11 + t17 * t17);
-    const lanes_mask t20 = t19 < 1.1830521861667747e-271;
-    const lanes_mask t21 = 8.452712498170644e+270 < t19;
-    const lanes t22 = lanes_select(t21, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
-    const lanes t23 = lanes_select(t20, lanes_of(-4.149515568880993e+180), t22);
-    const lanes t24 = t11 * t23;
-    const lanes t25 = t17 * t23;
-    const lanes t26 = t18 * t23;
-    const lanes t27 = 1.0 / lanes_sqrt(t26 * t26 + (t24 * t24 + t25 * t25));
-    const lanes t28 = t25 * t27;
-    const lanes t29 = lanes_abs(z_x);
-    const lanes t30 = lanes_abs(z_y);
-    const lanes t31 = lanes_abs(z_z);
-    const lanes_mask t32 = (t29 <= t30) & (t29 <= t31);
-    const lanes_mask t33 = t30 <= t31;
-    const lanes t34 = lanes_select(t33, z_z, -z_y);
-    const lanes t35 = -z_x;
-    const lanes t36 = lanes_select(t32, z_z, lanes_select(t33, lanes_of(0.0), t35));
-    const lanes t37 = lanes_select(t32, lanes_of(0.0), t34 * t34) + t36 * t36;
-    const lanes t38 = lanes_select(t32, z_y, lanes_select(t33, t35, lanes_of(0.0)));
-    const lanes t39 = 1.0 / lanes_sqrt(t38 * t38 + t37);
-    const lanes t40 = t36 * t39;
-    const lanes t41 = t24 * t27;
-    const lanes t42 = t34 * t39;
-    const lanes t43 = t40 * t28 - lanes_select(t32, lanes_of(0.0), t42 * t41);
-    const lanes t44 = t26 * t27;
-    const lanes t45 = t38 * t39;
-    const lanes t46 = t43 - t45 * t44;
-    const lanes t47 = t28 * (z_x * t45 - lanes_select(t32, lanes_of(0.0), z_z * t42));
-    const lanes t48 = t44 * (z_x * t40 + lanes_select(t32, lanes_of(0.0), z_y * t42));
-    const lanes t49 = t48 + (t47 - t41 * (z_y * t45 + z_z * t40));
-    const lanes t50 = t46 * t46 + t49 * t49;
-    const lanes_mask t51 = t50 < 1.1830521861667747e-271;
-    const lanes_mask t52 = 8.452712498170644e+270 < t50;
-    const lanes t53 = lanes_select(t52, lanes_of(2.409919865102884e-181), lanes_of(1.0));
-    const lanes t54 = lanes_select(t51, lanes_of(4.149515568880993e+180), t53);
-    const lanes t55 = t46 * t54;
+    const lanes t6 = 2.0 * x_qx;
+    const lanes t7 = x_qw * t6;
+    const lanes t8 = t0 * x_qy;
+    const lanes t9 = x_qx * t6;
+    const lanes t10 = 1.0 - x_qy * t1;
+    const lanes t11 = x_qz * t0;
+    const lanes t12 = x_y - y_y;
+    const lanes t13 = x_z - y_z;
+    const lanes t14 = x_x - y_x;
+    const lanes t15 = t13 * (t8 + t7) + t14 * (t3 - t2);
+    const lanes t16 = (t10 - t11) * t14 + ((t5 - t4) * t13 + (t3 + t2) * t12);
+    const lanes t17 = t13 * (t10 - t9) + (t14 * (t5 + t4) + t12 * (t8 - t7));
+    const lanes t18 = t12 * (1.0 - t9 - t11) + t15;
+    const lanes t19 = lanes_abs(z_z);
+    const lanes t20 = lanes_abs(z_x);
+    const lanes t21 = lanes_abs(z_y);
+    const lanes_mask t22 = t21 <= t19;
+    const lanes_mask t23 = (t20 <= t21) & (t20 <= t19);
+    const lanes t24 = t18 * t18 + (t17 * t17 + t16 * t16);
+    const lanes t25 = lanes_select(t22, z_z, -z_y);
+    const lanes t26 = -z_x;
+    const lanes t27 = lanes_select(t23, z_y, lanes_select(t22, t26, lanes_of(0.0)));
+    const lanes t28 = lanes_select(t23, lanes_of(0.0), t25 * t25) + t27 * t27;
+    const lanes_mask t29 = 8.452712498170644e+270 < t24;
+    const lanes t30 = lanes_select(t29, lanes_of(2.409919865102884e-181), lanes_of(1.0));
+    const lanes_mask t31 = t24 < 1.1830521861667747e-271;
+    const lanes t32 = lanes_select(t31, lanes_of(4.149515568880993e+180), t30);
+    const lanes t33 = lanes_select(t23, z_z, lanes_select(t22, lanes_of(0.0), t26));
+    const lanes t34 = t17 * t32;
+    const lanes t35 = t16 * t32;
+    const lanes t36 = t18 * t32;
+    const lanes t37 = 1.0 / lanes_sqrt(t33 * t33 + t28);
+    const lanes t38 = t33 * t37;
+    const lanes t39 = t27 * t37;
+    const lanes t40 = t25 * t37;
+    const lanes t41 = -1.0 / lanes_sqrt(t36 * t36 + (t34 * t34 + t35 * t35));
+    const lanes t42 = t35 * t41;
+    const lanes t43 = t34 * t41;
+    const lanes t44 = t36 * t41;
+    const lanes t45 = t43 * (z_x * t38 + lanes_select(t23, lanes_of(0.0), z_y * t40));
+    const lanes t46 = lanes_select(t23, lanes_of(0.0), t40 * t42) + t39 * t43;
+    const lanes t47 = t44 * (z_x * t39 - lanes_select(t23, lanes_of(0.0), z_z * t40));
+    const lanes t48 = t47 + (t45 - t42 * (z_y * t39 + z_z * t38));
+    const lanes t49 = t38 * t44 - t46;
+    const lanes t50 = t49 * t49 + t48 * t48;
+    const lanes_mask t51 = 8.452712498170644e+270 < t50;
+    const lanes_mask t52 = t50 < 1.1830521861667747e-271;
+    const lanes t53 = lanes_select(t51, lanes_of(2.409919865102884e-181), lanes_of(1.0));
+    const lanes t54 = lanes_select(t52, lanes_of(4.149515568880993e+180), t53);
+    const lanes t55 = t48 * t54;
     const lanes t56 = t49 * t54;
-    const lanes t57 = lanes_sqrt(t55 * t55 + t56 * t56);
-    const lanes t58 = lanes_select(0.0 < t57, t57, lanes_of(1.0));
-    const lanes t59 = lanes_select(t52, lanes_of(4.149515568880993e+180), lanes_of(1.0));
-    const lanes t60 = t57 * lanes_select(t51, lanes_of(2.409919865102884e-181), t59);
-    const lanes t61 = lanes_atan2(t60, z_z * t44 + (z_x * t41 + z_y * t28));
-    res[0] = t61 * lanes_select(0.0 < t60, t55 / t58, lanes_of(1.0));
-    res[1] = t61 * (t56 / t58);
+    const lanes t57 = lanes_select(t51, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t58 = lanes_sqrt(t56 * t56 + t55 * t55);
+    const lanes t59 = lanes_select(0.0 < t58, t58, lanes_of(1.0));
+    const lanes t60 = t58 * lanes_select(t52, lanes_of(2.409919865102884e-181), t57);
+    const lanes t61 = lanes_atan2(t60, z_y * t44 + (z_z * t43 + z_x * t42));
+    res[0] = t61 * lanes_select(0.0 < t60, t56 / t59, lanes_of(1.0));
+    res[1] = t61 * (t55 / t59);
 }
 
 /* Value and Jacobians of a block. */
@@ -102,7 +102,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -249,24 +251,28 @@ static void block_jacobians(
     const lanes t129 = t122 * t126 - lanes_select(t87, lanes_of(0.0), t123 * t125);
     res[0] = t77 * t75;
     res[1] = t77 * t78;
-    res_D_x[0] = t26 * t118 + t22 * t121;
-    res_D_x[1] = t32 * t121 - t26 * t124;
-    res_D_x[2] = t22 * t124 + t32 * t118;
-    res_D_x[3] = t124;
-    res_D_x[4] = t118;
-    res_D_x[5] = -t121;
-    res_D_x[6] = t26 * t127 + t22 * t128;
-    res_D_x[7] = t32 * t128 - t26 * t129;
-    res_D_x[8] = t22 * t129 + t32 * t127;
-    res_D_x[9] = t129;
-    res_D_x[10] = t127;
-    res_D_x[11] = -t128;
-    res_D_y[0] = t23 * t121 - (t4 * t124 + t15 * t118);
-    res_D_y[1] = t24 * t121 - (t8 * t124 + t18 * t118);
-    res_D_y[2] = t25 * t121 - (t12 * t124 + t21 * t118);
-    res_D_y[3] = t23 * t128 - (t4 * t129 + t15 * t127);
-    res_D_y[4] = t24 * t128 - (t8 * t129 + t18 * t127);
-    res_D_y[5] = t25 * t128 - (t12 * t129 + t21 * t127);
+    if (want_res_D_x) {
+        res_D_x[0] = t26 * t118 + t22 * t121;
+        res_D_x[1] = t32 * t121 - t26 * t124;
+        res_D_x[2] = t22 * t124 + t32 * t118;
+        res_D_x[3] = t124;
+        res_D_x[4] = t118;
+        res_D_x[5] = -t121;
+        res_D_x[6] = t26 * t127 + t22 * t128;
+        res_D_x[7] = t32 * t128 - t26 * t129;
+        res_D_x[8] = t22 * t129 + t32 * t127;
+        res_D_x[9] = t129;
+        res_D_x[10] = t127;
+        res_D_x[11] = -t128;
+    }
+    if (want_res_D_y) {
+        res_D_y[0] = t23 * t121 - (t4 * t124 + t15 * t118);
+        res_D_y[1] = t24 * t121 - (t8 * t124 + t18 * t118);
+        res_D_y[2] = t25 * t121 - (t12 * t124 + t21 * t118);
+        res_D_y[3] = t23 * t128 - (t4 * t129 + t15 * t127);
+        res_D_y[4] = t24 * t128 - (t8 * t129 + t18 * t127);
+        res_D_y[5] = t25 * t128 - (t12 * t129 + t21 * t127);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -288,7 +294,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 6, n, k);
 }
 
-int liegen_factors_bearing_se3_r3_batch(
+LANES_WHOLE int liegen_factors_bearing_se3_r3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -298,7 +304,9 @@ int liegen_factors_bearing_se3_r3_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 20 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -323,17 +331,16 @@ int liegen_factors_bearing_se3_r3_batch(
             liegen_factors_load(y, 3, k, count, y_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 6, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 6, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

@@ -31,7 +31,7 @@
  *   res_D_x: 2 x 6, derivative of res by the tangent of x
  *   res_D_y: 2 x 3, derivative of res by the tangent of y
  *
- * Operations: 139 (residual only), 269 (with Jacobians)
+ * Operations: 139 (residual only), 267 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -82,7 +82,7 @@ int liegen_factors_bearing_se3_r3_gtsam(
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
 
-/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_factors_bearing_se3_r3_gtsam_batch(
     ptrdiff_t n,
     liegen_factors_in x,

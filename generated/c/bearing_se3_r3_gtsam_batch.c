@@ -29,69 +29,69 @@ static void block_value(
     const lanes z_x = z[0];
     const lanes z_y = z[1];
     const lanes z_z = z[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = x_x - y_x;
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = 2.0 * x_qy;
+    const lanes t2 = t0 * x_qw;
+    const lanes t3 = x_qx * t1;
+    const lanes t4 = t1 * x_qw;
     const lanes t5 = t0 * x_qx;
-    const lanes t6 = t2 * x_qw;
-    const lanes t7 = x_y - y_y;
-    const lanes t8 = t2 * x_qx;
-    const lanes t9 = t0 * x_qw;
-    const lanes t10 = x_z - y_z;
-    const lanes t11 = (t8 - t9) * t10 + ((t1 - t3) * t4 + (t5 + t6) * t7);
-    const lanes t12 = 2.0 * x_qx;
-    const lanes t13 = x_qx * t12;
-    const lanes t14 = t4 * (t5 - t6) + t7 * (1.0 - t3 - t13);
-    const lanes t15 = x_qy * t2;
-    const lanes t16 = x_qw * t12;
-    const lanes t17 = t10 * (t15 + t16) + t14;
-    const lanes t18 = t10 * (t13 - t1) + (t7 * (t16 - t15) - t4 * (t8 + t9));
-    const lanes t19 = t18 * t18 + (t11 * t11 + t17 * t17);
-    const lanes_mask t20 = t19 < 1.1830521861667747e-271;
-    const lanes_mask t21 = 8.452712498170644e+270 < t19;
-    const lanes t22 = lanes_select(t21, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
-    const lanes t23 = lanes_select(t20, lanes_of(-4.149515568880993e+180), t22);
-    const lanes t24 = t11 * t23;
-    const lanes t25 = t17 * t23;
+    const lanes t6 = 2.0 * x_qx;
+    const lanes t7 = x_qw * t6;
+    const lanes t8 = t0 * x_qy;
+    const lanes t9 = x_qx * t6;
+    const lanes t10 = 1.0 - x_qy * t1;
+    const lanes t11 = x_qz * t0;
+    const lanes t12 = x_y - y_y;
+    const lanes t13 = x_z - y_z;
+    const lanes t14 = x_x - y_x;
+    const lanes t15 = t14 * (t2 - t3) - t13 * (t8 + t7);
+    const lanes t16 = (t10 - t11) * t14 + ((t5 - t4) * t13 + (t3 + t2) * t12);
+    const lanes t17 = t13 * (t10 - t9) + (t14 * (t5 + t4) + t12 * (t8 - t7));
+    const lanes t18 = t12 * (t11 + (t9 - 1.0)) + t15;
+    const lanes t19 = t18 * t18 + (t17 * t17 + t16 * t16);
+    const lanes_mask t20 = 8.452712498170644e+270 < t19;
+    const lanes t21 = lanes_select(t20, lanes_of(2.409919865102884e-181), lanes_of(1.0));
+    const lanes_mask t22 = t19 < 1.1830521861667747e-271;
+    const lanes t23 = lanes_select(t22, lanes_of(4.149515568880993e+180), t21);
+    const lanes t24 = t17 * t23;
+    const lanes t25 = t16 * t23;
     const lanes t26 = t18 * t23;
-    const lanes t27 = 1.0 / lanes_sqrt(t26 * t26 + (t24 * t24 + t25 * t25));
-    const lanes t28 = t25 * t27;
-    const lanes t29 = lanes_abs(t28);
+    const lanes t27 = -1.0 / lanes_sqrt(t26 * t26 + (t24 * t24 + t25 * t25));
+    const lanes t28 = t24 * t27;
+    const lanes t29 = t25 * t27;
     const lanes t30 = t26 * t27;
-    const lanes t31 = lanes_abs(t30);
-    const lanes_mask t32 = t29 <= t31;
-    const lanes t33 = lanes_select(t32, t30, t28);
-    const lanes t34 = t24 * t27;
-    const lanes t35 = lanes_abs(t34);
-    const lanes_mask t36 = (t35 <= t29) & (t35 <= t31);
-    const lanes t37 = lanes_select(t36, t30, lanes_select(t32, lanes_of(0.0), t34));
-    const lanes t38 = lanes_select(t36, lanes_of(0.0), t33 * t33) + t37 * t37;
-    const lanes t39 = lanes_select(t36, -t28, lanes_select(t32, t34, lanes_of(0.0)));
-    const lanes t40 = 1.0 / lanes_sqrt(t39 * t39 + t38);
-    const lanes t41 = t37 * t40;
-    const lanes t42 = t39 * t40;
-    const lanes t43 = t33 * t40;
-    const lanes t44 = z_y * (lanes_select(t36, lanes_of(0.0), t30 * t43) + t34 * t42);
-    const lanes t45 = z_z * (t34 * t41 + lanes_select(t36, lanes_of(0.0), t28 * t43));
-    const lanes t46 = t45 + (z_x * (t30 * t41 - t28 * t42) + t44);
-    const lanes t47 = z_y * t41 - lanes_select(t36, lanes_of(0.0), z_x * t43);
-    const lanes t48 = t47 - z_z * t42;
-    const lanes t49 = t48 * t48 + t46 * t46;
-    const lanes_mask t50 = t49 < 1.1830521861667747e-271;
-    const lanes_mask t51 = 8.452712498170644e+270 < t49;
-    const lanes t52 = lanes_select(t51, lanes_of(2.409919865102884e-181), lanes_of(1.0));
-    const lanes t53 = lanes_select(t50, lanes_of(4.149515568880993e+180), t52);
-    const lanes t54 = t48 * t53;
-    const lanes t55 = t46 * t53;
-    const lanes t56 = lanes_sqrt(t54 * t54 + t55 * t55);
-    const lanes t57 = lanes_select(0.0 < t56, t56, lanes_of(1.0));
-    const lanes t58 = lanes_select(t51, lanes_of(4.149515568880993e+180), lanes_of(1.0));
-    const lanes t59 = t56 * lanes_select(t50, lanes_of(2.409919865102884e-181), t58);
-    const lanes t60 = lanes_atan2(t59, t34 * z_x + t28 * z_y - t30 * z_z);
-    res[0] = t60 * lanes_select(0.0 < t59, t54 / t57, lanes_of(-1.0));
-    res[1] = t60 * (t55 / t57);
+    const lanes t31 = lanes_abs(t28);
+    const lanes t32 = lanes_abs(t29);
+    const lanes t33 = lanes_abs(t30);
+    const lanes_mask t34 = t33 <= t31;
+    const lanes_mask t35 = (t32 <= t33) & (t32 <= t31);
+    const lanes t36 = lanes_select(t35, -t28, lanes_select(t34, lanes_of(0.0), t29));
+    const lanes t37 = lanes_select(t34, t28, t30);
+    const lanes t38 = lanes_select(t35, t30, lanes_select(t34, t29, lanes_of(0.0)));
+    const lanes t39 = lanes_select(t35, lanes_of(0.0), t37 * t37) + t38 * t38;
+    const lanes t40 = 1.0 / lanes_sqrt(t36 * t36 + t39);
+    const lanes t41 = t36 * t40;
+    const lanes t42 = t37 * t40;
+    const lanes t43 = t38 * t40;
+    const lanes t44 = z_z * (t29 * t41 + lanes_select(t35, lanes_of(0.0), t30 * t42));
+    const lanes t45 = z_z * t43 - lanes_select(t35, lanes_of(0.0), z_x * t42);
+    const lanes t46 = z_y * (lanes_select(t35, lanes_of(0.0), t28 * t42) + t29 * t43);
+    const lanes t47 = z_x * (t28 * t41 - t30 * t43) - t44 - t46;
+    const lanes t48 = t45 - z_y * t41;
+    const lanes t49 = t48 * t48 + t47 * t47;
+    const lanes_mask t50 = 8.452712498170644e+270 < t49;
+    const lanes_mask t51 = t49 < 1.1830521861667747e-271;
+    const lanes t52 = lanes_select(t50, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
+    const lanes t53 = lanes_select(t51, lanes_of(-4.149515568880993e+180), t52);
+    const lanes t54 = t47 * t53;
+    const lanes t55 = t48 * t53;
+    const lanes t56 = lanes_select(t50, lanes_of(4.149515568880993e+180), lanes_of(1.0));
+    const lanes t57 = lanes_sqrt(t55 * t55 + t54 * t54);
+    const lanes t58 = lanes_select(0.0 < t57, t57, lanes_of(1.0));
+    const lanes t59 = t57 * lanes_select(t51, lanes_of(2.409919865102884e-181), t56);
+    const lanes t60 = lanes_atan2(t59, t28 * z_z + t29 * z_x - t30 * z_y);
+    res[0] = t60 * lanes_select(0.0 < t59, t55 / t58, lanes_of(-1.0));
+    res[1] = t60 * (t54 / t58);
 }
 
 /* Value and Jacobians of a block. */
@@ -101,7 +101,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -117,32 +119,32 @@ static void block_jacobians(
     const lanes z_y = z[1];
     const lanes z_z = z[2];
     const lanes t0 = 2.0 * x_qz;
-    const lanes t1 = x_qy * 2.0;
-    const lanes t2 = t0 * x_qw;
-    const lanes t3 = t1 * x_qx;
+    const lanes t1 = 2.0 * x_qy;
+    const lanes t2 = t0 * x_qx;
+    const lanes t3 = t1 * x_qw;
     const lanes t4 = t3 - t2;
-    const lanes t5 = t3 + t2;
-    const lanes t6 = 2.0 * x_qx;
-    const lanes t7 = x_qw * t6;
-    const lanes t8 = x_qy * t0;
-    const lanes t9 = t8 - t7;
-    const lanes t10 = t8 + t7;
-    const lanes t11 = x_qx * t6;
-    const lanes t12 = x_qz * t0;
-    const lanes t13 = 1.0 - t12 - t11;
-    const lanes t14 = x_y - y_y;
-    const lanes t15 = x_x - y_x;
-    const lanes t16 = t0 * x_qx;
-    const lanes t17 = t1 * x_qw;
-    const lanes t18 = t16 + t17;
-    const lanes t19 = t16 - t17;
-    const lanes t20 = 1.0 - x_qy * t1;
-    const lanes t21 = t20 - t12;
-    const lanes t22 = t20 - t11;
-    const lanes t23 = x_z - y_z;
-    const lanes t24 = t23 * t10 + (t15 * t4 + t14 * t13);
-    const lanes t25 = t19 * t23 + (t21 * t15 + t5 * t14);
-    const lanes t26 = t23 * t22 + (t15 * t18 + t14 * t9);
+    const lanes t5 = t2 + t3;
+    const lanes t6 = t0 * x_qw;
+    const lanes t7 = x_qx * t1;
+    const lanes t8 = t7 + t6;
+    const lanes t9 = t6 - t7;
+    const lanes t10 = 2.0 * x_qx;
+    const lanes t11 = x_qw * t10;
+    const lanes t12 = t0 * x_qy;
+    const lanes t13 = t12 - t11;
+    const lanes t14 = t12 + t11;
+    const lanes t15 = x_z - y_z;
+    const lanes t16 = x_y - y_y;
+    const lanes t17 = x_x - y_x;
+    const lanes t18 = x_qx * t10;
+    const lanes t19 = 1.0 - x_qy * t1;
+    const lanes t20 = x_qz * t0;
+    const lanes t21 = t19 - t18;
+    const lanes t22 = t19 - t20;
+    const lanes t23 = t20 + (t18 - 1.0);
+    const lanes t24 = t22 * t17 + (t8 * t16 - t4 * t15);
+    const lanes t25 = t15 * t21 + (t17 * t5 + t16 * t13);
+    const lanes t26 = t15 * t14 - t17 * t9 - t16 * t23;
     const lanes t27 = t26 * t26 + (t25 * t25 + t24 * t24);
     const lanes_mask t28 = 8.452712498170644e+270 < t27;
     const lanes_mask t29 = t27 < 1.1830521861667747e-271;
@@ -152,30 +154,30 @@ static void block_jacobians(
     const lanes t33 = t25 * t31;
     const lanes t34 = t26 * t31;
     const lanes t35 = lanes_sqrt(t34 * t34 + (t33 * t33 + t32 * t32));
-    const lanes t36 = 1.0 / t35;
-    const lanes t37 = t34 * t36;
-    const lanes t38 = t33 * t36;
-    const lanes t39 = t32 * t36;
+    const lanes t36 = -1.0 / t35;
+    const lanes t37 = t33 * t36;
+    const lanes t38 = t32 * t36;
+    const lanes t39 = t34 * t36;
     const lanes t40 = lanes_abs(t37);
     const lanes t41 = lanes_abs(t38);
     const lanes t42 = lanes_abs(t39);
     const lanes_mask t43 = t42 <= t40;
     const lanes_mask t44 = (t41 <= t42) & (t41 <= t40);
-    const lanes t45 = lanes_select(t43, t37, -t39);
-    const lanes t46 = -t38;
-    const lanes t47 = lanes_select(t44, t37, lanes_select(t43, lanes_of(0.0), t46));
-    const lanes t48 = lanes_select(t44, lanes_of(0.0), t45 * t45) + t47 * t47;
-    const lanes t49 = lanes_select(t44, t39, lanes_select(t43, t46, lanes_of(0.0)));
-    const lanes t50 = 1.0 / lanes_sqrt(t49 * t49 + t48);
-    const lanes t51 = t49 * t50;
+    const lanes t45 = lanes_select(t44, -t39, lanes_select(t43, t38, lanes_of(0.0)));
+    const lanes t46 = -t37;
+    const lanes t47 = lanes_select(t44, t46, lanes_select(t43, lanes_of(0.0), t38));
+    const lanes t48 = lanes_select(t43, t46, t39);
+    const lanes t49 = lanes_select(t44, lanes_of(0.0), t48 * t48) + t45 * t45;
+    const lanes t50 = 1.0 / lanes_sqrt(t47 * t47 + t49);
+    const lanes t51 = t47 * t50;
     const lanes t52 = t45 * t50;
-    const lanes t53 = t47 * t50;
-    const lanes t54 = lanes_select(t44, lanes_of(0.0), t37 * t52) + t46 * t51;
-    const lanes t55 = t39 * t51 + t37 * t53;
-    const lanes t56 = t38 * t53 + lanes_select(t44, lanes_of(0.0), t39 * t52);
-    const lanes t57 = z_y * t53 - lanes_select(t44, lanes_of(0.0), z_x * t52);
-    const lanes t58 = z_x * t55 + z_y * t54 - z_z * t56;
-    const lanes t59 = t57 - z_z * t51;
+    const lanes t53 = t48 * t50;
+    const lanes t54 = t39 * t52 + t37 * t51;
+    const lanes t55 = t38 * t51 + lanes_select(t44, lanes_of(0.0), t39 * t53);
+    const lanes t56 = t38 * t52 - lanes_select(t44, lanes_of(0.0), t37 * t53);
+    const lanes t57 = lanes_select(t44, lanes_of(0.0), z_x * t53) + z_z * t52;
+    const lanes t58 = z_y * t56 + (z_z * t55 - z_x * t54);
+    const lanes t59 = t57 - z_y * t51;
     const lanes t60 = t38 * t38;
     const lanes t61 = t39 * t39;
     const lanes t62 = t37 * t37;
@@ -184,18 +186,18 @@ static void block_jacobians(
     const lanes t65 = lanes_select(t44, t38, lanes_select(t43, t39, t37));
     const lanes_mask t66 = 8.452712498170644e+270 < t64;
     const lanes_mask t67 = t64 < 1.1830521861667747e-271;
-    const lanes t68 = lanes_select(t66, lanes_of(2.409919865102884e-181), lanes_of(1.0));
-    const lanes t69 = lanes_select(t67, lanes_of(4.149515568880993e+180), t68);
+    const lanes t68 = lanes_select(t66, lanes_of(-2.409919865102884e-181), lanes_of(-1.0));
+    const lanes t69 = lanes_select(t67, lanes_of(-4.149515568880993e+180), t68);
     const lanes t70 = t58 * t69;
     const lanes t71 = t59 * t69;
     const lanes t72 = lanes_select(t66, lanes_of(4.149515568880993e+180), lanes_of(1.0));
     const lanes t73 = t65 / lanes_sqrt(lanes_select(t44, t61 + t62, t63));
-    const lanes t74 = z_x * t46 - t39 * z_y - t37 * z_z;
+    const lanes t74 = t39 * z_y + (t37 * z_z + t38 * z_x);
     const lanes t75 = lanes_sqrt(t71 * t71 + t70 * t70);
     const lanes t76 = lanes_select(0.0 < t75, t75, lanes_of(1.0));
     const lanes t77 = t75 * lanes_select(t67, lanes_of(2.409919865102884e-181), t72);
     const lanes t78 = t70 / t76;
-    const lanes t79 = t74 + t58 * t73;
+    const lanes t79 = t58 * t73 - t74;
     const lanes_mask t80 = 0.0 < t77;
     const lanes t81 = lanes_select(t80, t71 / t76, lanes_of(-1.0));
     const lanes t82 = t59 * t73;
@@ -207,46 +209,49 @@ static void block_jacobians(
     const lanes t88 = t74 * (t78 * t82 - t81 * t79) - t59 * t77;
     const lanes t89 = t86 * (t78 * t79 + t81 * t82);
     const lanes t90 = t86 * (t74 * t81);
-    const lanes t91 = t78 * (t74 * t74) + t58 * t77;
+    const lanes t91 = t78 * (t74 * t74) - t58 * t77;
     const lanes t92 = t35 * lanes_select(t29, lanes_of(2.409919865102884e-181), t87);
     const lanes t93 = t78 * t88 + t81 * t89;
     const lanes t94 = t78 * t91 + t81 * t90;
     const lanes t95 = 1.0 / t92;
-    const lanes t96 = t55 * t95;
-    const lanes t97 = t52 * t95;
-    const lanes t98 = t54 * t95;
-    const lanes t99 = t53 * t95;
-    const lanes t100 = t51 * t95;
-    const lanes t101 = t56 * t95;
-    const lanes t102 = t98 * t94 - t99 * t93;
-    const lanes t103 = lanes_select(t44, lanes_of(0.0), t97 * t93) + t96 * t94;
-    const lanes t104 = t101 * t94 - t100 * t93;
+    const lanes t96 = t53 * t95;
+    const lanes t97 = t56 * t95;
+    const lanes t98 = t51 * t95;
+    const lanes t99 = t55 * t95;
+    const lanes t100 = t52 * t95;
+    const lanes t101 = t54 * t95;
+    const lanes t102 = t97 * t94 - t98 * t93;
+    const lanes t103 = t99 * t94 + t100 * t93;
+    const lanes t104 = lanes_select(t44, lanes_of(0.0), t96 * t93) - t101 * t94;
     const lanes t105 = t78 * t89 - t81 * t88;
     const lanes t106 = t78 * t90 - t81 * t91;
-    const lanes t107 = t105 * t99 - t106 * t98;
-    const lanes t108 = lanes_select(t44, lanes_of(0.0), t105 * t97) + t106 * t96;
-    const lanes t109 = t106 * t101 - t105 * t100;
-    const lanes t110 = -t25;
+    const lanes t107 = t106 * t97 - t105 * t98;
+    const lanes t108 = t105 * t100 + t106 * t99;
+    const lanes t109 = lanes_select(t44, lanes_of(0.0), t105 * t96) - t106 * t101;
     res[0] = t84 * t81;
-    res[1] = t84 * t78;
-    res_D_x[0] = t26 * t107 - t24 * t109;
-    res_D_x[1] = t26 * t108 + t25 * t109;
-    res_D_x[2] = t107 * t110 - t24 * t108;
-    res_D_x[3] = -t108;
-    res_D_x[4] = t107;
-    res_D_x[5] = t109;
-    res_D_x[6] = t26 * t102 + t24 * t104;
-    res_D_x[7] = t110 * t104 - t26 * t103;
-    res_D_x[8] = t24 * t103 + t110 * t102;
-    res_D_x[9] = t103;
-    res_D_x[10] = t102;
-    res_D_x[11] = -t104;
-    res_D_y[0] = t21 * t108 - t4 * t107 - t18 * t109;
-    res_D_y[1] = t5 * t108 - t13 * t107 - t9 * t109;
-    res_D_y[2] = t19 * t108 - t10 * t107 - t22 * t109;
-    res_D_y[3] = t18 * t104 - (t21 * t103 + t4 * t102);
-    res_D_y[4] = t9 * t104 - (t5 * t103 + t13 * t102);
-    res_D_y[5] = t22 * t104 - (t19 * t103 + t10 * t102);
+    res[1] = -(t84 * t78);
+    if (want_res_D_x) {
+        res_D_x[0] = t25 * t107 - t26 * t108;
+        res_D_x[1] = t24 * t108 - t25 * t109;
+        res_D_x[2] = t26 * t109 - t24 * t107;
+        res_D_x[3] = t109;
+        res_D_x[4] = t107;
+        res_D_x[5] = t108;
+        res_D_x[6] = t25 * t102 - t26 * t103;
+        res_D_x[7] = t24 * t103 - t25 * t104;
+        res_D_x[8] = t26 * t104 - t24 * t102;
+        res_D_x[9] = t104;
+        res_D_x[10] = t102;
+        res_D_x[11] = t103;
+    }
+    if (want_res_D_y) {
+        res_D_y[0] = t9 * t107 - t5 * t108 - t22 * t109;
+        res_D_y[1] = t23 * t107 - t13 * t108 - t8 * t109;
+        res_D_y[2] = t4 * t109 - (t21 * t108 + t14 * t107);
+        res_D_y[3] = t9 * t102 - t5 * t103 - t22 * t104;
+        res_D_y[4] = t23 * t102 - t13 * t103 - t8 * t104;
+        res_D_y[5] = t4 * t104 - (t21 * t103 + t14 * t102);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -268,7 +273,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 6, n, k);
 }
 
-int liegen_factors_bearing_se3_r3_gtsam_batch(
+LANES_WHOLE int liegen_factors_bearing_se3_r3_gtsam_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -278,7 +283,9 @@ int liegen_factors_bearing_se3_r3_gtsam_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 20 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -303,17 +310,16 @@ int liegen_factors_bearing_se3_r3_gtsam_batch(
             liegen_factors_load(y, 3, k, count, y_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 6, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 6, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

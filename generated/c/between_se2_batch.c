@@ -56,7 +56,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -96,24 +98,28 @@ static void block_jacobians(
     res[0] = t18;
     res[1] = t20;
     res[2] = t2;
-    res_D_x[0] = t15;
-    res_D_x[1] = -t14;
-    res_D_x[2] = t10 * t14 + (t15 * t9 - t22);
-    res_D_x[3] = t14;
-    res_D_x[4] = t15;
-    res_D_x[5] = t14 * t9 - t21 - t15 * t10;
-    res_D_x[6] = lanes_of(0.0);
-    res_D_x[7] = lanes_of(0.0);
-    res_D_x[8] = lanes_of(-1.0);
-    res_D_y[0] = t12;
-    res_D_y[1] = t13;
-    res_D_y[2] = t22;
-    res_D_y[3] = -t13;
-    res_D_y[4] = t12;
-    res_D_y[5] = t21;
-    res_D_y[6] = lanes_of(0.0);
-    res_D_y[7] = lanes_of(0.0);
-    res_D_y[8] = lanes_of(1.0);
+    if (want_res_D_x) {
+        res_D_x[0] = t15;
+        res_D_x[1] = -t14;
+        res_D_x[2] = t10 * t14 + (t15 * t9 - t22);
+        res_D_x[3] = t14;
+        res_D_x[4] = t15;
+        res_D_x[5] = t14 * t9 - t21 - t15 * t10;
+        res_D_x[6] = lanes_of(0.0);
+        res_D_x[7] = lanes_of(0.0);
+        res_D_x[8] = lanes_of(-1.0);
+    }
+    if (want_res_D_y) {
+        res_D_y[0] = t12;
+        res_D_y[1] = t13;
+        res_D_y[2] = t22;
+        res_D_y[3] = -t13;
+        res_D_y[4] = t12;
+        res_D_y[5] = t21;
+        res_D_y[6] = lanes_of(0.0);
+        res_D_y[7] = lanes_of(0.0);
+        res_D_y[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -135,7 +141,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 9, n, k);
 }
 
-int liegen_factors_between_se2_batch(
+LANES_WHOLE int liegen_factors_between_se2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -145,7 +151,9 @@ int liegen_factors_between_se2_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 21 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -170,17 +178,16 @@ int liegen_factors_between_se2_batch(
             liegen_factors_load(y, 4, k, count, y_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 3, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 9, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 9, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

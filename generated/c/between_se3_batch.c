@@ -103,7 +103,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -217,113 +219,120 @@ static void block_jacobians(
     const lanes t88 = (t86 - 989919839.2921487) * (t58 / t57) - 0.002777777777777778;
     const lanes t89 = t88 * t87;
     const lanes t90 = t87 * (t60 * (-2.0)) + t50 * t89;
-    const lanes t91 = t38 * t89;
-    const lanes t92 = t82 * (2.0 * t78) + (t90 - t49 * t89);
-    const lanes t93 = t51 * t77 + (t47 * t65 - t41 * t79);
-    const lanes t94 = t83 * t78 + (t73 * t82 - t36 * t91);
-    const lanes t95 = t37 * t89;
-    const lanes t96 = t46 * t77 + (t34 * t79 - t48 * t65);
-    const lanes t97 = t81 * (-0.5);
-    const lanes t98 = t94 - t97;
-    const lanes t99 = t81 * t78 + (t61 * t82 - t36 * t95);
+    const lanes t93 = t90 + t82 * (2.0 * t78) - t49 * t89;
+    const lanes t94 = t38 * t89;
+    const lanes t95 = t73 * t82 + t83 * t78 - t36 * t94;
+    const lanes t96 = t37 * t89;
+    const lanes t97 = t61 * t82 + t81 * t78 - t36 * t96;
+    const lanes t98 = t81 * (-0.5);
+    const lanes t99 = t95 - t98;
     const lanes t100 = t83 * (-0.5);
-    const lanes t101 = t99 + t100;
-    const lanes t102 = t35 * t65 - t44 * t79 - t40 * t77;
-    const lanes t103 = t51 * t98 + (t22 * t96 - t41 * t92) - t21 * t102;
-    const lanes t104 = t94 + t97;
-    const lanes t105 = t51 * t80 + (t47 * t69 - t41 * t76);
-    const lanes t106 = t83 * (2.0 * t73) + (t90 - t38 * t91);
-    const lanes t107 = t46 * t80 + (t34 * t76 - t48 * t69);
-    const lanes t108 = t81 * t73 + (t61 * t83 - t38 * t95);
-    const lanes t109 = t82 * (-0.5);
-    const lanes t110 = t108 - t109;
-    const lanes t111 = t35 * t69 - t44 * t76 - t40 * t80;
-    const lanes t112 = t51 * t106 + (t22 * t107 - t41 * t104) - t21 * t111;
-    const lanes t113 = t99 - t100;
-    const lanes t114 = t70 * t51 + (t72 * t47 - t64 * t41);
-    const lanes t115 = t108 + t109;
-    const lanes t116 = t70 * t46 + (t64 * t34 - t72 * t48);
-    const lanes t117 = t90 + t81 * (2.0 * t61) - t37 * t95;
-    const lanes t118 = t72 * t35 - t64 * t44 - t70 * t40;
-    const lanes t119 = t51 * t115 + (t22 * t116 - t41 * t113) - t21 * t118;
+    const lanes t101 = t97 + t100;
+    const lanes t107 = t95 + t98;
+    const lanes t108 = t90 + t83 * (2.0 * t73) - t38 * t94;
+    const lanes t109 = t61 * t83 + t81 * t73 - t38 * t96;
+    const lanes t110 = t82 * (-0.5);
+    const lanes t111 = t109 - t110;
+    const lanes t117 = t97 - t100;
+    const lanes t118 = t109 + t110;
+    const lanes t119 = t90 + t81 * (2.0 * t61) - t37 * t96;
     res[0] = t37;
     res[1] = t38;
     res[2] = t36;
     res[3] = t81;
     res[4] = t83;
     res[5] = t82;
-    res_D_x[0] = t116;
-    res_D_x[1] = t114;
-    res_D_x[2] = t118;
-    res_D_x[3] = lanes_of(0.0);
-    res_D_x[4] = lanes_of(0.0);
-    res_D_x[5] = lanes_of(0.0);
-    res_D_x[6] = t107;
-    res_D_x[7] = t105;
-    res_D_x[8] = t111;
-    res_D_x[9] = lanes_of(0.0);
-    res_D_x[10] = lanes_of(0.0);
-    res_D_x[11] = lanes_of(0.0);
-    res_D_x[12] = t96;
-    res_D_x[13] = t93;
-    res_D_x[14] = t102;
-    res_D_x[15] = lanes_of(0.0);
-    res_D_x[16] = lanes_of(0.0);
-    res_D_x[17] = lanes_of(0.0);
-    res_D_x[18] = t46 * t115 + (t39 * t118 + t34 * t113) - t22 * t114 - t48 * t117;
-    res_D_x[19] = t47 * t117 + t119;
-    res_D_x[20] = t35 * t117 + (t21 * t114 - t44 * t113 - t40 * t115 - t39 * t116);
-    res_D_x[21] = t116;
-    res_D_x[22] = t114;
-    res_D_x[23] = t118;
-    res_D_x[24] = t46 * t106 + (t39 * t111 + t34 * t104) - t22 * t105 - t48 * t110;
-    res_D_x[25] = t47 * t110 + t112;
-    res_D_x[26] = t35 * t110 + (t21 * t105 - t44 * t104 - t40 * t106 - t39 * t107);
-    res_D_x[27] = t107;
-    res_D_x[28] = t105;
-    res_D_x[29] = t111;
-    res_D_x[30] = t46 * t98 + (t39 * t102 + t34 * t92) - t22 * t93 - t48 * t101;
-    res_D_x[31] = t47 * t101 + t103;
-    res_D_x[32] = t35 * t101 + (t21 * t93 - t44 * t92 - t40 * t98 - t39 * t96);
-    res_D_x[33] = t96;
-    res_D_x[34] = t93;
-    res_D_x[35] = t102;
-    res_D_y[0] = t72;
-    res_D_y[1] = t70;
-    res_D_y[2] = t64;
-    res_D_y[3] = lanes_of(0.0);
-    res_D_y[4] = lanes_of(0.0);
-    res_D_y[5] = lanes_of(0.0);
-    res_D_y[6] = t69;
-    res_D_y[7] = t80;
-    res_D_y[8] = t76;
-    res_D_y[9] = lanes_of(0.0);
-    res_D_y[10] = lanes_of(0.0);
-    res_D_y[11] = lanes_of(0.0);
-    res_D_y[12] = t65;
-    res_D_y[13] = t77;
-    res_D_y[14] = t79;
-    res_D_y[15] = lanes_of(0.0);
-    res_D_y[16] = lanes_of(0.0);
-    res_D_y[17] = lanes_of(0.0);
-    res_D_y[18] = t117;
-    res_D_y[19] = t115;
-    res_D_y[20] = t113;
-    res_D_y[21] = t72;
-    res_D_y[22] = t70;
-    res_D_y[23] = t64;
-    res_D_y[24] = t110;
-    res_D_y[25] = t106;
-    res_D_y[26] = t104;
-    res_D_y[27] = t69;
-    res_D_y[28] = t80;
-    res_D_y[29] = t76;
-    res_D_y[30] = t101;
-    res_D_y[31] = t98;
-    res_D_y[32] = t92;
-    res_D_y[33] = t65;
-    res_D_y[34] = t77;
-    res_D_y[35] = t79;
+    if (want_res_D_x) {
+        const lanes t91 = t46 * t77 + (t34 * t79 - t48 * t65);
+        const lanes t92 = t51 * t77 + (t47 * t65 - t41 * t79);
+        const lanes t102 = t35 * t65 - t44 * t79 - t40 * t77;
+        const lanes t103 = t51 * t99 + (t22 * t91 - t21 * t102 - t41 * t93);
+        const lanes t104 = t46 * t99 + (t34 * t93 + (t39 * t102 - t22 * t92));
+        const lanes t105 = t46 * t80 + (t34 * t76 - t48 * t69);
+        const lanes t106 = t51 * t80 + (t47 * t69 - t41 * t76);
+        const lanes t112 = t35 * t69 - t44 * t76 - t40 * t80;
+        const lanes t113 = t51 * t108 + (t22 * t105 - t21 * t112 - t41 * t107);
+        const lanes t114 = t46 * t108 + (t34 * t107 + (t39 * t112 - t22 * t106));
+        const lanes t115 = t70 * t46 + (t64 * t34 - t72 * t48);
+        const lanes t116 = t70 * t51 + (t72 * t47 - t64 * t41);
+        const lanes t120 = t72 * t35 - t64 * t44 - t70 * t40;
+        const lanes t121 = t51 * t118 + (t22 * t115 - t21 * t120 - t41 * t117);
+        const lanes t122 = t46 * t118 + (t34 * t117 + (t39 * t120 - t22 * t116));
+        res_D_x[0] = t115;
+        res_D_x[1] = t116;
+        res_D_x[2] = t120;
+        res_D_x[3] = lanes_of(0.0);
+        res_D_x[4] = lanes_of(0.0);
+        res_D_x[5] = lanes_of(0.0);
+        res_D_x[6] = t105;
+        res_D_x[7] = t106;
+        res_D_x[8] = t112;
+        res_D_x[9] = lanes_of(0.0);
+        res_D_x[10] = lanes_of(0.0);
+        res_D_x[11] = lanes_of(0.0);
+        res_D_x[12] = t91;
+        res_D_x[13] = t92;
+        res_D_x[14] = t102;
+        res_D_x[15] = lanes_of(0.0);
+        res_D_x[16] = lanes_of(0.0);
+        res_D_x[17] = lanes_of(0.0);
+        res_D_x[18] = t122 - t48 * t119;
+        res_D_x[19] = t47 * t119 + t121;
+        res_D_x[20] = t35 * t119 + (t21 * t116 - t39 * t115 - t44 * t117 - t40 * t118);
+        res_D_x[21] = t115;
+        res_D_x[22] = t116;
+        res_D_x[23] = t120;
+        res_D_x[24] = t114 - t48 * t111;
+        res_D_x[25] = t47 * t111 + t113;
+        res_D_x[26] = t35 * t111 + (t21 * t106 - t39 * t105 - t44 * t107 - t40 * t108);
+        res_D_x[27] = t105;
+        res_D_x[28] = t106;
+        res_D_x[29] = t112;
+        res_D_x[30] = t104 - t48 * t101;
+        res_D_x[31] = t47 * t101 + t103;
+        res_D_x[32] = t35 * t101 + (t21 * t92 - t39 * t91 - t44 * t93 - t40 * t99);
+        res_D_x[33] = t91;
+        res_D_x[34] = t92;
+        res_D_x[35] = t102;
+    }
+    if (want_res_D_y) {
+        res_D_y[0] = t72;
+        res_D_y[1] = t70;
+        res_D_y[2] = t64;
+        res_D_y[3] = lanes_of(0.0);
+        res_D_y[4] = lanes_of(0.0);
+        res_D_y[5] = lanes_of(0.0);
+        res_D_y[6] = t69;
+        res_D_y[7] = t80;
+        res_D_y[8] = t76;
+        res_D_y[9] = lanes_of(0.0);
+        res_D_y[10] = lanes_of(0.0);
+        res_D_y[11] = lanes_of(0.0);
+        res_D_y[12] = t65;
+        res_D_y[13] = t77;
+        res_D_y[14] = t79;
+        res_D_y[15] = lanes_of(0.0);
+        res_D_y[16] = lanes_of(0.0);
+        res_D_y[17] = lanes_of(0.0);
+        res_D_y[18] = t119;
+        res_D_y[19] = t118;
+        res_D_y[20] = t117;
+        res_D_y[21] = t72;
+        res_D_y[22] = t70;
+        res_D_y[23] = t64;
+        res_D_y[24] = t111;
+        res_D_y[25] = t108;
+        res_D_y[26] = t107;
+        res_D_y[27] = t69;
+        res_D_y[28] = t80;
+        res_D_y[29] = t76;
+        res_D_y[30] = t101;
+        res_D_y[31] = t99;
+        res_D_y[32] = t93;
+        res_D_y[33] = t65;
+        res_D_y[34] = t77;
+        res_D_y[35] = t79;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -345,7 +354,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 36, n, k);
 }
 
-int liegen_factors_between_se3_batch(
+LANES_WHOLE int liegen_factors_between_se3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -355,7 +364,9 @@ int liegen_factors_between_se3_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 78 : 6);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -380,17 +391,16 @@ int liegen_factors_between_se3_batch(
             liegen_factors_load(y, 7, k, count, y_lanes);
             liegen_factors_load(z, 7, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 6, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 36, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 36, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 36, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 36, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

@@ -27,7 +27,7 @@
  *   res_D_x: 3 x 3, derivative of res by the tangent of x
  *   res_D_y: 3 x 3, derivative of res by the tangent of y
  *
- * Operations: 89 (residual only), 184 (with Jacobians)
+ * Operations: 89 (residual only), 182 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -99,14 +99,14 @@ int liegen_factors_between_so3(
     const double z_qy = z[1];
     const double z_qz = z[2];
     const double z_qw = z[3];
-    const double t0 = x_qz * y_qz + (x_qy * y_qy + (x_qw * y_qw + x_qx * y_qx));
+    const double t0 = x_qx * y_qx + (x_qw * y_qw + (x_qz * y_qz + x_qy * y_qy));
     const double t1 = z_qw * t0;
-    const double t2 = y_qy * x_qz + (x_qw * y_qx - y_qw * x_qx - x_qy * y_qz);
+    const double t2 = x_qw * y_qx + (x_qz * y_qy - y_qz * x_qy) - y_qw * x_qx;
     const double t3 = z_qx * t2;
     const double t4 = t1 + t3;
-    const double t5 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
+    const double t5 = y_qz * x_qx + (y_qy * x_qw - (x_qz * y_qx + x_qy * y_qw));
     const double t6 = z_qy * t5;
-    const double t7 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
+    const double t7 = y_qz * x_qw + (x_qy * y_qx - x_qz * y_qw) - y_qy * x_qx;
     const double t8 = z_qz * t7;
     const double t9 = t6 + t8;
     const double t10 = t4 + t9;
@@ -129,24 +129,24 @@ int liegen_factors_between_so3(
     const double t27 = t20 * (t26 - t23);
     const double t28 = z_qw * t5;
     const double t29 = t0 * z_qy;
-    const double t30 = t28 - t29;
+    const double t30 = t29 - t28;
     const double t31 = z_qx * t7;
     const double t32 = t2 * z_qz;
-    const double t33 = t31 - t32;
+    const double t33 = t32 - t31;
     const double t34 = t20 * (t30 + t33);
     const double t35 = z_qw * t7;
     const double t36 = t0 * z_qz;
-    const double t37 = t35 - t36;
+    const double t37 = t36 - t35;
     const double t38 = z_qx * t5;
     const double t39 = t2 * z_qy;
-    const double t40 = t38 - t39;
-    const double t41 = t20 * (t40 - t37);
+    const double t40 = t39 - t38;
+    const double t41 = t20 * (t37 - t40);
     const double t42 = t20 * 0.5;
-    const double t43 = t41 * t41 + (t27 * t27 + t34 * t34);
-    const double t44 = t43 * (t43 * (-2.25732705039638e-06) + 0.07465244042649771);
-    const double t45 = t43 * (t44 - 38.45987747204322) + 3799.5172048139725;
+    const double t43 = t34 * t34 + (t41 * t41 + t27 * t27);
+    const double t44 = t43 * (t43 * 2.25732705039638e-06 - 0.07465244042649771);
+    const double t45 = t43 * (t44 + 38.45987747204322) - 3799.5172048139725;
     const double t46 = t43 * (t43 * (t43 - 635.5207748643182) + 92825.69243378133);
-    const double t47 = t45 * (t43 / (t46 - 2735652.38746603)) - 0.08333333333333333;
+    const double t47 = 0.08333333333333333 + t45 * (t43 / (t46 - 2735652.38746603));
     const double t48 = t27 * t47;
     const double t49 = t20 * (t23 + t26);
     const double t50 = t38 + t39;
@@ -157,41 +157,41 @@ int liegen_factors_between_so3(
     const double t55 = t20 * (t37 + t40);
     const double t56 = t34 * t47;
     const double t57 = t1 - t3;
-    const double t58 = t6 - t8;
+    const double t58 = t8 - t6;
     const double t59 = t24 + t25;
     const double t60 = t21 + t22;
     const double t61 = t41 * t47;
-    const double t62 = 1.0 + t43 * t47;
+    const double t62 = 1.0 - t43 * t47;
     const double t63 = t34 * t48;
-    const double t64 = t41 * (-0.5);
+    const double t64 = t41 * 0.5;
     const double t65 = t41 * t48;
     const double t66 = t34 * 0.5;
     const double t67 = t41 * t56;
     const double t68 = t27 * (-0.5);
     res[0] = t27;
-    res[1] = -t34;
+    res[1] = t34;
     res[2] = t41;
     if (res_D_x != NULL) {
-        res_D_x[0] = t42 * (t4 - t9) - t48 * t49;
+        res_D_x[0] = t42 * (t4 - t9) + t48 * t49;
         res_D_x[1] = t42 * (t50 + t51) - t48 * t52;
         res_D_x[2] = t42 * (t53 - t54) - t48 * t55;
         res_D_x[3] = t42 * (t50 - t51) + t49 * t56;
-        res_D_x[4] = t42 * (t57 + t58) + t52 * t56;
-        res_D_x[5] = t42 * (t59 + t60) + t55 * t56;
-        res_D_x[6] = t42 * (t53 + t54) - t49 * t61;
+        res_D_x[4] = t42 * (t57 - t58) - t52 * t56;
+        res_D_x[5] = t42 * (t59 + t60) - t55 * t56;
+        res_D_x[6] = t42 * (t53 + t54) + t49 * t61;
         res_D_x[7] = t42 * (t59 - t60) - t52 * t61;
-        res_D_x[8] = t42 * (t57 - t58) - t55 * t61;
+        res_D_x[8] = t42 * (t57 + t58) - t55 * t61;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = t62 - t27 * t48;
-        res_D_y[1] = t63 + t64;
-        res_D_y[2] = -(t65 + t66);
-        res_D_y[3] = t63 - t64;
-        res_D_y[4] = t62 - t34 * t56;
+        res_D_y[0] = t62 + t27 * t48;
+        res_D_y[1] = t63 - t64;
+        res_D_y[2] = t65 + t66;
+        res_D_y[3] = t63 + t64;
+        res_D_y[4] = t62 + t34 * t56;
         res_D_y[5] = t67 + t68;
-        res_D_y[6] = t66 - t65;
+        res_D_y[6] = t65 - t66;
         res_D_y[7] = t67 - t68;
-        res_D_y[8] = t62 - t41 * t61;
+        res_D_y[8] = t62 + t41 * t61;
     }
     return 0;
 }

@@ -27,7 +27,7 @@
  *   res_D_x: 3 x 3, derivative of res by the tangent of x
  *   res_D_y: 3 x 3, derivative of res by the tangent of y
  *
- * Operations: 89 (residual only), 184 (with Jacobians)
+ * Operations: 89 (residual only), 182 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -78,7 +78,7 @@ int liegen_factors_between_so3(
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
 
-/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_factors_between_so3_batch(
     ptrdiff_t n,
     liegen_factors_in x,

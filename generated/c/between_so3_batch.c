@@ -55,7 +55,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -69,14 +71,14 @@ static void block_jacobians(
     const lanes z_qy = z[1];
     const lanes z_qz = z[2];
     const lanes z_qw = z[3];
-    const lanes t0 = x_qz * y_qz + (x_qy * y_qy + (x_qw * y_qw + x_qx * y_qx));
+    const lanes t0 = x_qx * y_qx + (x_qw * y_qw + (x_qz * y_qz + x_qy * y_qy));
     const lanes t1 = z_qw * t0;
-    const lanes t2 = y_qy * x_qz + (x_qw * y_qx - y_qw * x_qx - x_qy * y_qz);
+    const lanes t2 = x_qw * y_qx + (x_qz * y_qy - y_qz * x_qy) - y_qw * x_qx;
     const lanes t3 = z_qx * t2;
     const lanes t4 = t1 + t3;
-    const lanes t5 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
+    const lanes t5 = y_qz * x_qx + (y_qy * x_qw - (x_qz * y_qx + x_qy * y_qw));
     const lanes t6 = z_qy * t5;
-    const lanes t7 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
+    const lanes t7 = y_qz * x_qw + (x_qy * y_qx - x_qz * y_qw) - y_qy * x_qx;
     const lanes t8 = z_qz * t7;
     const lanes t9 = t6 + t8;
     const lanes t10 = t4 + t9;
@@ -99,66 +101,70 @@ static void block_jacobians(
     const lanes t27 = t20 * (t26 - t23);
     const lanes t28 = z_qw * t5;
     const lanes t29 = t0 * z_qy;
-    const lanes t30 = t28 - t29;
+    const lanes t30 = t29 - t28;
     const lanes t31 = z_qx * t7;
     const lanes t32 = t2 * z_qz;
-    const lanes t33 = t31 - t32;
+    const lanes t33 = t32 - t31;
     const lanes t34 = t20 * (t30 + t33);
     const lanes t35 = z_qw * t7;
     const lanes t36 = t0 * z_qz;
-    const lanes t37 = t35 - t36;
+    const lanes t37 = t36 - t35;
     const lanes t38 = z_qx * t5;
     const lanes t39 = t2 * z_qy;
-    const lanes t40 = t38 - t39;
-    const lanes t41 = t20 * (t40 - t37);
-    const lanes t42 = t20 * 0.5;
-    const lanes t43 = t41 * t41 + (t27 * t27 + t34 * t34);
-    const lanes t44 = t43 * (t43 * (-2.25732705039638e-06) + 0.07465244042649771);
-    const lanes t45 = t43 * (t44 - 38.45987747204322) + 3799.5172048139725;
+    const lanes t40 = t39 - t38;
+    const lanes t41 = t20 * (t37 - t40);
+    const lanes t43 = t34 * t34 + (t41 * t41 + t27 * t27);
+    const lanes t44 = t43 * (t43 * 2.25732705039638e-06 - 0.07465244042649771);
+    const lanes t45 = t43 * (t44 + 38.45987747204322) - 3799.5172048139725;
     const lanes t46 = t43 * (t43 * (t43 - 635.5207748643182) + 92825.69243378133);
-    const lanes t47 = t45 * (t43 / (t46 - 2735652.38746603)) - 0.08333333333333333;
+    const lanes t47 = 0.08333333333333333 + t45 * (t43 / (t46 - 2735652.38746603));
     const lanes t48 = t27 * t47;
-    const lanes t49 = t20 * (t23 + t26);
-    const lanes t50 = t38 + t39;
-    const lanes t51 = t35 + t36;
-    const lanes t52 = t20 * (t30 - t33);
-    const lanes t53 = t31 + t32;
-    const lanes t54 = t28 + t29;
-    const lanes t55 = t20 * (t37 + t40);
     const lanes t56 = t34 * t47;
-    const lanes t57 = t1 - t3;
-    const lanes t58 = t6 - t8;
-    const lanes t59 = t24 + t25;
-    const lanes t60 = t21 + t22;
     const lanes t61 = t41 * t47;
-    const lanes t62 = 1.0 + t43 * t47;
-    const lanes t63 = t34 * t48;
-    const lanes t64 = t41 * (-0.5);
-    const lanes t65 = t41 * t48;
-    const lanes t66 = t34 * 0.5;
-    const lanes t67 = t41 * t56;
-    const lanes t68 = t27 * (-0.5);
     res[0] = t27;
-    res[1] = -t34;
+    res[1] = t34;
     res[2] = t41;
-    res_D_x[0] = t42 * (t4 - t9) - t48 * t49;
-    res_D_x[1] = t42 * (t50 + t51) - t48 * t52;
-    res_D_x[2] = t42 * (t53 - t54) - t48 * t55;
-    res_D_x[3] = t42 * (t50 - t51) + t49 * t56;
-    res_D_x[4] = t42 * (t57 + t58) + t52 * t56;
-    res_D_x[5] = t42 * (t59 + t60) + t55 * t56;
-    res_D_x[6] = t42 * (t53 + t54) - t49 * t61;
-    res_D_x[7] = t42 * (t59 - t60) - t52 * t61;
-    res_D_x[8] = t42 * (t57 - t58) - t55 * t61;
-    res_D_y[0] = t62 - t27 * t48;
-    res_D_y[1] = t63 + t64;
-    res_D_y[2] = -(t65 + t66);
-    res_D_y[3] = t63 - t64;
-    res_D_y[4] = t62 - t34 * t56;
-    res_D_y[5] = t67 + t68;
-    res_D_y[6] = t66 - t65;
-    res_D_y[7] = t67 - t68;
-    res_D_y[8] = t62 - t41 * t61;
+    if (want_res_D_x) {
+        const lanes t42 = t20 * 0.5;
+        const lanes t49 = t20 * (t23 + t26);
+        const lanes t50 = t38 + t39;
+        const lanes t51 = t35 + t36;
+        const lanes t52 = t20 * (t30 - t33);
+        const lanes t53 = t31 + t32;
+        const lanes t54 = t28 + t29;
+        const lanes t55 = t20 * (t37 + t40);
+        const lanes t57 = t1 - t3;
+        const lanes t58 = t8 - t6;
+        const lanes t59 = t24 + t25;
+        const lanes t60 = t21 + t22;
+        res_D_x[0] = t42 * (t4 - t9) + t48 * t49;
+        res_D_x[1] = t42 * (t50 + t51) - t48 * t52;
+        res_D_x[2] = t42 * (t53 - t54) - t48 * t55;
+        res_D_x[3] = t42 * (t50 - t51) + t49 * t56;
+        res_D_x[4] = t42 * (t57 - t58) - t52 * t56;
+        res_D_x[5] = t42 * (t59 + t60) - t55 * t56;
+        res_D_x[6] = t42 * (t53 + t54) + t49 * t61;
+        res_D_x[7] = t42 * (t59 - t60) - t52 * t61;
+        res_D_x[8] = t42 * (t57 + t58) - t55 * t61;
+    }
+    if (want_res_D_y) {
+        const lanes t62 = 1.0 - t43 * t47;
+        const lanes t63 = t34 * t48;
+        const lanes t64 = t41 * 0.5;
+        const lanes t65 = t41 * t48;
+        const lanes t66 = t34 * 0.5;
+        const lanes t67 = t41 * t56;
+        const lanes t68 = t27 * (-0.5);
+        res_D_y[0] = t62 + t27 * t48;
+        res_D_y[1] = t63 - t64;
+        res_D_y[2] = t65 + t66;
+        res_D_y[3] = t63 + t64;
+        res_D_y[4] = t62 + t34 * t56;
+        res_D_y[5] = t67 + t68;
+        res_D_y[6] = t65 - t66;
+        res_D_y[7] = t67 - t68;
+        res_D_y[8] = t62 + t41 * t61;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -180,7 +186,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 9, n, k);
 }
 
-int liegen_factors_between_so3_batch(
+LANES_WHOLE int liegen_factors_between_so3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -190,7 +196,9 @@ int liegen_factors_between_so3_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 21 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -215,17 +223,16 @@ int liegen_factors_between_so3_batch(
             liegen_factors_load(y, 4, k, count, y_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 3, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 9, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 9, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

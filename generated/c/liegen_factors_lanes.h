@@ -27,6 +27,20 @@
 #endif
 #endif
 
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* what is not wanted is neither filled nor read */
+#endif
+#if defined(__GNUC__)
+#define LANES_COLD __attribute__((noinline, cold, unused))
+#else
+#define LANES_COLD
+#endif
+#if !defined(LANES_WHOLE) && defined(__GNUC__)
+#define LANES_WHOLE __attribute__((flatten)) /* all calls inline, whatever their number */
+#elif !defined(LANES_WHOLE)
+#define LANES_WHOLE
+#endif
+
 /* LANES: factors that are computed at once; 1 is plain C, which any compiler takes. */
 #ifndef LANES
 #if !defined(__GNUC__)
@@ -73,12 +87,6 @@ static inline lanes lanes_select(lanes_mask m, lanes a, lanes b)
 }
 #endif
 
-#if defined(__GNUC__)
-#define LANES_COLD __attribute__((noinline, cold, unused))
-#else
-#define LANES_COLD
-#endif
-
 /* What vectors of the compiler lack, by machine. */
 #if LANES == 8 && defined(__AVX512F__) && defined(__x86_64__)
 #include <immintrin.h>
@@ -106,8 +114,15 @@ static inline lanes lanes_sqrt(lanes x)
 }
 #endif
 
-#if LANES > 1 && !defined(LANES_SHUFFLE) /* gcc before 12: not for 8 lanes */
+#if LANES > 1 && !defined(LANES_SHUFFLE) /* gcc before 12: not for the widest */
 #define LANES_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (lanes_mask){ __VA_ARGS__ })
+#endif
+
+/* Without them nothing is written past the caches. */
+#ifdef LANES_STREAM
+#define LANES_STREAMS(wanted) (wanted)
+#else
+#define LANES_STREAMS(wanted) ((wanted) && 0)
 #endif
 
 /* The bits of a number as a signed integer. */
@@ -146,14 +161,14 @@ static inline lanes lanes_signed(lanes x, lanes y)
     return lanes_of_bits(lanes_to_bits(x) ^ (lanes_to_bits(y) & LANES_SIGN));
 }
 
-/* The angle of (x, y), as atan2(y, x) of C99 with all its special values: within 1.5 ulp. */
+/* The angle of (x, y), as atan2(y, x) of C99 with all its special values: within 1.6 ulp. */
 static inline lanes lanes_atan2(lanes y, lanes x)
 {
     const lanes a = lanes_abs(x), b = lanes_abs(y);
     const lanes_mask steep = a < b, left = lanes_to_bits(x) < 0;
     lanes high = lanes_select(steep, b, a), low = lanes_select(steep, a, b);
-    const lanes_mask infinite = (low > 1.7976931348623157e308) & (high > 1.7976931348623157e308);
-    const lanes scale = lanes_select(high > 1e300, lanes_of(7.888609052210118e-31), lanes_of(1.0));
+    const lanes_mask infinite = (low > 1.7976931348623157e+308) & (high > 1.7976931348623157e+308);
+    const lanes scale = lanes_select(high > 1e+300, lanes_of(7.888609052210118e-31), lanes_of(1.0));
     high = lanes_select(infinite, lanes_of(1.0), high * scale);
     low = lanes_select(infinite, lanes_of(1.0), low * scale);
     /* atan(q) = pi/4 + atan((q - 1)/(q + 1)) where q = low/high > 1/2 */
@@ -176,7 +191,7 @@ static inline lanes lanes_atan2(lanes y, lanes x)
 }
 
 /* Beyond this the argument's remainder by pi/2 needs more digits of pi than below. */
-#define LANES_FAR 1.5e6
+#define LANES_FAR 1500000.0
 
 /* Both by libm, lane by lane. */
 LANES_COLD static void lanes_sincos_far(const lanes *x, lanes *s, lanes *c)
@@ -260,7 +275,7 @@ static inline lanes lanes_exp(lanes x)
 static inline lanes lanes_log(lanes x)
 {
     const lanes_mask small = x < 2.2250738585072014e-308;
-    const lanes y = lanes_select(small, x * 18014398509481984.0, x); /* 2^54 */
+    const lanes y = lanes_select(small, x * 1.8014398509481984e+16, x); /* 2^54 */
     const lanes_bits b = lanes_to_bits(y), e = (b - 4604544271217802189LL) >> 52; /* sqrt(1/2) */
     const lanes f = lanes_of_bits(b - (e << 52)) - 1.0;
     const lanes k = lanes_of_bits(e + 4843621399236968448LL) - 6755399441055744.0;
@@ -308,13 +323,13 @@ static inline lanes lanes_acos(lanes x) { return lanes_atan2(lanes_sqrt((1.0 - x
 
 static inline int lanes_streams(ptrdiff_t n, int size)
 {
-    return n > LIEGEN_FACTORS_STREAM_BYTES / (ptrdiff_t)sizeof(double) / size;
+    return LANES_STREAMS(n > LIEGEN_FACTORS_STREAM_BYTES / (ptrdiff_t)sizeof(double) / size);
 }
-
 /* An output in whole lines of 64 bytes: a begun line waits here for the next block. */
-#define LANES_ROOM(size) (16 / LANES + (size))
+#define LANES_LINE (64 / (int)sizeof(double))
+#define LANES_ROOM(size) (2 * LANES_LINE / LANES + (size))
 typedef struct {
-    double kept[8];
+    double kept[LANES_LINE];
     double *to;
     ptrdiff_t held;
 } lanes_pen;
@@ -339,15 +354,15 @@ static inline void lanes_write(lanes_pen *pen, double *line, const double *from,
     ptrdiff_t k = 0;
     if (pen->to != line + phase) {
         lanes_lift(pen);
-        for (k = phase; k % 8 != 0 && k < end; ++k) line[k] = from[k];
+        for (k = phase; k % LANES_LINE != 0 && k < end; ++k) line[k] = from[k];
     }
 #ifdef LANES_STREAM
-    for (; k + 8 <= end; k += 8)
-        for (int j = 0; j < 8; j += LANES) LANES_STREAM(line + k + j, from + k + j);
+    for (; k + LANES_LINE <= end; k += LANES_LINE)
+        for (int j = 0; j < LANES_LINE; j += LANES) LANES_STREAM(line + k + j, from + k + j);
 #endif
     memcpy(pen->kept, from + k, sizeof pen->kept);
     pen->held = end - k;
-    pen->to = k % 8 == 0 ? line + end : NULL;
+    pen->to = k % LANES_LINE == 0 ? line + end : NULL;
 }
 
 /* Another thread may read what was written once this is done. */
@@ -361,53 +376,59 @@ static inline void lanes_finish(int stream)
 
 #if LANES > 1
 /*
- * Between memory and lanes: squares of LANES_ROW x LANES_ROW numbers are transposed in registers (two of
- * them side by side for 8 lanes).
+ * Between memory and lanes: squares of LANES_ROW x LANES_ROW numbers are transposed in registers, side by
+ * side where there are more lanes.
  */
 #if LANES == 2
 #define LANES_ROW 2
 #define LANES_EVEN(a, b) LANES_SHUFFLE(a, b, 0, 2)
 #define LANES_ODD(a, b) LANES_SHUFFLE(a, b, 1, 3)
+#define LANES_JOIN(r) (r)[0]
+#define LANES_SPLIT(put, v) put(0, v)
 #elif LANES == 4
 #define LANES_ROW 4
 #define LANES_EVEN(a, b) LANES_SHUFFLE(a, b, 0, 4, 2, 6)
 #define LANES_ODD(a, b) LANES_SHUFFLE(a, b, 1, 5, 3, 7)
 #define LANES_LOW(a, b) LANES_SHUFFLE(a, b, 0, 1, 4, 5)
 #define LANES_HIGH(a, b) LANES_SHUFFLE(a, b, 2, 3, 6, 7)
-#else
+#define LANES_JOIN(r) (r)[0]
+#define LANES_SPLIT(put, v) put(0, v)
+#elif LANES == 8
 #define LANES_ROW 4
 #define LANES_EVEN(a, b) LANES_SHUFFLE(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
 #define LANES_ODD(a, b) LANES_SHUFFLE(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
 #define LANES_LOW(a, b) LANES_SHUFFLE(a, b, 0, 1, 8, 9, 4, 5, 12, 13)
 #define LANES_HIGH(a, b) LANES_SHUFFLE(a, b, 2, 3, 10, 11, 6, 7, 14, 15)
+#define LANES_JOIN(r) LANES_SHUFFLE((r)[0], (r)[1], 0, 1, 2, 3, 4, 5, 6, 7)
+#define LANES_SPLIT(put, v) put(0, LANES_SHUFFLE(v, v, 0, 1, 2, 3)) put(1, LANES_SHUFFLE(v, v, 4, 5, 6, 7))
+#elif LANES == 16
+#define LANES_ROW 4
+#define LANES_EVEN(a, b) LANES_SHUFFLE(a, b, 0, 16, 2, 18, 4, 20, 6, 22, 8, 24, 10, 26, 12, 28, 14, 30)
+#define LANES_ODD(a, b) LANES_SHUFFLE(a, b, 1, 17, 3, 19, 5, 21, 7, 23, 9, 25, 11, 27, 13, 29, 15, 31)
+#define LANES_LOW(a, b) LANES_SHUFFLE(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)
+#define LANES_HIGH(a, b) LANES_SHUFFLE(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
+#define LANES_JOIN(r) LANES_SHUFFLE(LANES_SHUFFLE((r)[0], (r)[1], 0, 1, 2, 3, 4, 5, 6, 7), LANES_SHUFFLE((r)[2], (r)[3], 0, 1, 2, 3, 4, 5, 6, 7), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#define LANES_SPLIT(put, v) put(0, LANES_SHUFFLE(v, v, 0, 1, 2, 3)) put(1, LANES_SHUFFLE(v, v, 4, 5, 6, 7)) put(2, LANES_SHUFFLE(v, v, 8, 9, 10, 11)) put(3, LANES_SHUFFLE(v, v, 12, 13, 14, 15))
 #endif
+#define LANES_SIDES (LANES / LANES_ROW)
 
 typedef double lanes_row __attribute__((vector_size(8 * LANES_ROW)));
 
-/* Row j, for 8 lanes rows j and j + 4. */
+/* Row j, and those of the other squares side by side. */
 static inline lanes lanes_rows_at(const double *const *from, int j, ptrdiff_t at)
 {
-    lanes_row a;
-    memcpy(&a, from[j] + at, sizeof a);
-#if LANES == 8
-    lanes_row b;
-    memcpy(&b, from[j + 4] + at, sizeof b);
-    return LANES_SHUFFLE(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-#else
-    return a;
-#endif
+    lanes_row r[LANES_SIDES];
+    for (int i = 0; i < LANES_SIDES; ++i) memcpy(r + i, from[j + i * LANES_ROW] + at, sizeof *r);
+    return LANES_JOIN(r);
 }
 
+#define LANES_PUT(i, row) \
+    const lanes_row r##i = row; \
+    memcpy(to + i * LANES_ROW * stride, &r##i, sizeof r##i);
 static inline void lanes_rows_to(double *to, ptrdiff_t stride, lanes rows)
 {
-#if LANES == 8
-    const lanes_row a = LANES_SHUFFLE(rows, rows, 0, 1, 2, 3), b = LANES_SHUFFLE(rows, rows, 4, 5, 6, 7);
-    memcpy(to, &a, sizeof a);
-    memcpy(to + 4 * stride, &b, sizeof b);
-#else
     (void)stride;
-    memcpy(to, &rows, sizeof rows);
-#endif
+    LANES_SPLIT(LANES_PUT, rows)
 }
 
 /* Numbers at .. at + LANES_ROW - 1 of the LANES factors that begin at from[j]. */
@@ -455,9 +476,10 @@ static inline lanes lanes_gather(const double *const *from, ptrdiff_t at)
     const lanes v = { from[0][at], from[1][at] };
 #elif LANES == 4
     const lanes v = { from[0][at], from[1][at], from[2][at], from[3][at] };
-#else
-    const lanes v = { from[0][at], from[1][at], from[2][at], from[3][at],
-                      from[4][at], from[5][at], from[6][at], from[7][at] };
+#elif LANES == 8
+    const lanes v = { from[0][at], from[1][at], from[2][at], from[3][at], from[4][at], from[5][at], from[6][at], from[7][at] };
+#elif LANES == 16
+    const lanes v = { from[0][at], from[1][at], from[2][at], from[3][at], from[4][at], from[5][at], from[6][at], from[7][at], from[8][at], from[9][at], from[10][at], from[11][at], from[12][at], from[13][at], from[14][at], from[15][at] };
 #endif
     return v;
 }
@@ -491,7 +513,7 @@ static LANES_IN_PLACE void liegen_factors_ahead(liegen_factors_in in, int size, 
     else if (in.comp == 1)
         for (ptrdiff_t at = next; at < next + LANES; ++at) {
             const double *from = in.data + (in.index != NULL ? in.index[at] : at) * in.stride;
-            for (int c = 0; c < size; c += 8) LANES_FETCH(from + c);
+            for (int c = 0; c < size; c += LANES_LINE) LANES_FETCH(from + c);
             if (in.index != NULL) LANES_FETCH(from + size - 1);
         }
 }

@@ -61,7 +61,8 @@ static void block_jacobians(
     const lanes *x,
     const lanes *z,
     lanes *res,
-    lanes *res_D_x)
+    lanes *res_D_x,
+    int want_res_D_x)
 {
     const lanes x_x = x[0];
     const lanes x_y = x[1];
@@ -106,44 +107,46 @@ static void block_jacobians(
     const lanes t34 = x_x * z_x + x_y * z_y + x_z * z_z;
     const lanes t35 = lanes_atan2(t31, t34);
     const lanes t36 = t27 / t29;
-    const lanes t37 = lanes_select(t32, t35, lanes_of(1.0));
-    const lanes t38 = lanes_select(0.0 < t34, lanes_of(1.0), lanes_of(0.0));
-    const lanes t39 = t37 / lanes_select(t32, t31, t38);
-    const lanes t40 = lanes_abs(x_x);
-    const lanes t41 = lanes_abs(x_y);
-    const lanes t42 = lanes_abs(x_z);
-    const lanes_mask t43 = (t40 <= t41) & (t40 <= t42);
-    const lanes_mask t44 = t41 <= t42;
-    const lanes t45 = lanes_select(t44, -x_z, x_y);
-    const lanes t46 = lanes_select(t43, x_z, lanes_select(t44, lanes_of(0.0), t14));
-    const lanes t47 = lanes_select(t43, lanes_of(0.0), t45 * t45) + t46 * t46;
-    const lanes t48 = lanes_select(t43, x_y, lanes_select(t44, t14, lanes_of(0.0)));
-    const lanes t49 = 1.0 / lanes_sqrt(t47 + t48 * t48);
-    const lanes t50 = t46 * t49;
-    const lanes t51 = t45 * t49;
-    const lanes t52 = t16 * t50 - lanes_select(t43, lanes_of(0.0), t13 * t51);
-    const lanes t53 = t48 * t49;
-    const lanes t54 = t52 - t17 * t53;
-    const lanes t55 = lanes_select(t3, lanes_of(0.0), t15 * t51);
-    const lanes t56 = lanes_select(t43, lanes_of(0.0), t55) + t12 * t50 + t11 * t53;
-    const lanes t57 = t39 * (t33 * t54 - t36 * t56);
-    const lanes t58 = lanes_select(t43, lanes_of(0.0), t6 * t51) - z_y * t50;
-    const lanes t59 = t34 * (t33 * t56 + t36 * t54) + t31 * (t58 + z_z * t53);
-    const lanes t60 = x_y * t53 + x_z * t50;
-    const lanes t61 = lanes_select(t43, lanes_of(0.0), x_z * t51) + x_x * t53;
-    const lanes t62 = x_x * t50 - lanes_select(t43, lanes_of(0.0), x_y * t51);
-    const lanes t63 = t13 * t60 + t16 * t61 + t17 * t62;
-    const lanes t64 = t12 * t61 - lanes_select(t3, lanes_of(0.0), t15 * t60);
-    const lanes t65 = t64 - t11 * t62;
-    const lanes t66 = t39 * (t33 * t63 - t36 * t65);
-    const lanes t67 = t31 * (z_x * t60 - z_y * t61 - z_z * t62);
-    const lanes t68 = t34 * (t33 * t65 + t36 * t63) + t67;
     res[0] = t35 * t33;
     res[1] = t35 * t36;
-    res_D_x[0] = t33 * t59 - t36 * t57;
-    res_D_x[1] = t33 * t68 - t36 * t66;
-    res_D_x[2] = t36 * t59 + t33 * t57;
-    res_D_x[3] = t36 * t68 + t33 * t66;
+    if (want_res_D_x) {
+        const lanes t37 = lanes_select(t32, t35, lanes_of(1.0));
+        const lanes t38 = lanes_select(0.0 < t34, lanes_of(1.0), lanes_of(0.0));
+        const lanes t39 = t37 / lanes_select(t32, t31, t38);
+        const lanes t40 = lanes_abs(x_x);
+        const lanes t41 = lanes_abs(x_y);
+        const lanes t42 = lanes_abs(x_z);
+        const lanes_mask t43 = (t40 <= t41) & (t40 <= t42);
+        const lanes_mask t44 = t41 <= t42;
+        const lanes t45 = lanes_select(t44, -x_z, x_y);
+        const lanes t46 = lanes_select(t43, x_z, lanes_select(t44, lanes_of(0.0), t14));
+        const lanes t47 = lanes_select(t43, lanes_of(0.0), t45 * t45) + t46 * t46;
+        const lanes t48 = lanes_select(t43, x_y, lanes_select(t44, t14, lanes_of(0.0)));
+        const lanes t49 = 1.0 / lanes_sqrt(t47 + t48 * t48);
+        const lanes t50 = t46 * t49;
+        const lanes t51 = t45 * t49;
+        const lanes t52 = t16 * t50 - lanes_select(t43, lanes_of(0.0), t13 * t51);
+        const lanes t53 = t48 * t49;
+        const lanes t54 = t52 - t17 * t53;
+        const lanes t55 = lanes_select(t3, lanes_of(0.0), t15 * t51);
+        const lanes t56 = lanes_select(t43, lanes_of(0.0), t55) + t12 * t50 + t11 * t53;
+        const lanes t57 = t39 * (t33 * t54 - t36 * t56);
+        const lanes t58 = lanes_select(t43, lanes_of(0.0), t6 * t51) - z_y * t50;
+        const lanes t59 = t34 * (t33 * t56 + t36 * t54) + t31 * (t58 + z_z * t53);
+        const lanes t60 = x_y * t53 + x_z * t50;
+        const lanes t61 = lanes_select(t43, lanes_of(0.0), x_z * t51) + x_x * t53;
+        const lanes t62 = x_x * t50 - lanes_select(t43, lanes_of(0.0), x_y * t51);
+        const lanes t63 = t13 * t60 + t16 * t61 + t17 * t62;
+        const lanes t64 = t12 * t61 - lanes_select(t3, lanes_of(0.0), t15 * t60);
+        const lanes t65 = t64 - t11 * t62;
+        const lanes t66 = t39 * (t33 * t63 - t36 * t65);
+        const lanes t67 = t31 * (z_x * t60 - z_y * t61 - z_z * t62);
+        const lanes t68 = t34 * (t33 * t65 + t36 * t63) + t67;
+        res_D_x[0] = t33 * t59 - t36 * t57;
+        res_D_x[1] = t33 * t68 - t36 * t66;
+        res_D_x[2] = t36 * t59 + t33 * t57;
+        res_D_x[3] = t36 * t68 + t33 * t66;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -161,7 +164,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_x, 4, n, k);
 }
 
-int liegen_factors_prior_s2_batch(
+LANES_WHOLE int liegen_factors_prior_s2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in z,
@@ -169,7 +172,8 @@ int liegen_factors_prior_s2_batch(
     liegen_factors_out res_D_x,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int jacobians = want_res_D_x;
     const int stream = lanes_streams(n, jacobians ? 6 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -190,16 +194,14 @@ int liegen_factors_prior_s2_batch(
             liegen_factors_load(x, 3, k, count, x_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
+                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes, want_res_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

@@ -61,7 +61,8 @@ static void block_jacobians(
     const lanes *x,
     const lanes *z,
     lanes *res,
-    lanes *res_D_x)
+    lanes *res_D_x,
+    int want_res_D_x)
 {
     const lanes x_x = x[0];
     const lanes x_y = x[1];
@@ -104,27 +105,29 @@ static void block_jacobians(
     const lanes t32 = x_x * z_x + x_y * z_y + x_z * z_z;
     const lanes t33 = lanes_atan2(t29, t32);
     const lanes t34 = t25 / t27;
-    const lanes t35 = lanes_select(t30, t33, lanes_of(1.0));
-    const lanes t36 = lanes_select(0.0 < t32, lanes_of(1.0), lanes_of(0.0));
-    const lanes t37 = t35 / lanes_select(t30, t29, t36);
-    const lanes t38 = x_z * x_z;
-    const lanes t39 = x_x * x_x;
-    const lanes t40 = x_y * x_y;
-    const lanes t41 = lanes_select(t4, t38 + t39, t40 + t39);
-    const lanes t42 = lanes_select(t3, x_x, lanes_select(t4, x_y, x_z));
-    const lanes t43 = t42 / lanes_sqrt(lanes_select(t3, t40 + t38, t41));
-    const lanes t44 = t18 * t43;
-    const lanes t45 = t32 - t16 * t43;
-    const lanes t46 = t37 * (t31 * t44 - t34 * t45);
-    const lanes t47 = t32 * (t34 * t44 + t31 * t45) + t18 * t29;
-    const lanes t48 = t32 * (t32 * t34) + t16 * t29;
-    const lanes t49 = t37 * (t32 * t31);
     res[0] = t33 * t31;
     res[1] = t33 * t34;
-    res_D_x[0] = t31 * t47 - t34 * t46;
-    res_D_x[1] = t31 * t48 - t34 * t49;
-    res_D_x[2] = t34 * t47 + t31 * t46;
-    res_D_x[3] = t34 * t48 + t31 * t49;
+    if (want_res_D_x) {
+        const lanes t35 = lanes_select(t30, t33, lanes_of(1.0));
+        const lanes t36 = lanes_select(0.0 < t32, lanes_of(1.0), lanes_of(0.0));
+        const lanes t37 = t35 / lanes_select(t30, t29, t36);
+        const lanes t38 = x_z * x_z;
+        const lanes t39 = x_x * x_x;
+        const lanes t40 = x_y * x_y;
+        const lanes t41 = lanes_select(t4, t38 + t39, t40 + t39);
+        const lanes t42 = lanes_select(t3, x_x, lanes_select(t4, x_y, x_z));
+        const lanes t43 = t42 / lanes_sqrt(lanes_select(t3, t40 + t38, t41));
+        const lanes t44 = t18 * t43;
+        const lanes t45 = t32 - t16 * t43;
+        const lanes t46 = t37 * (t31 * t44 - t34 * t45);
+        const lanes t47 = t32 * (t34 * t44 + t31 * t45) + t18 * t29;
+        const lanes t48 = t32 * (t32 * t34) + t16 * t29;
+        const lanes t49 = t37 * (t32 * t31);
+        res_D_x[0] = t31 * t47 - t34 * t46;
+        res_D_x[1] = t31 * t48 - t34 * t49;
+        res_D_x[2] = t34 * t47 + t31 * t46;
+        res_D_x[3] = t34 * t48 + t31 * t49;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -142,7 +145,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_x, 4, n, k);
 }
 
-int liegen_factors_prior_s2_gtsam_batch(
+LANES_WHOLE int liegen_factors_prior_s2_gtsam_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in z,
@@ -150,7 +153,8 @@ int liegen_factors_prior_s2_gtsam_batch(
     liegen_factors_out res_D_x,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int jacobians = want_res_D_x;
     const int stream = lanes_streams(n, jacobians ? 6 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -171,16 +175,14 @@ int liegen_factors_prior_s2_gtsam_batch(
             liegen_factors_load(x, 3, k, count, x_lanes);
             liegen_factors_load(z, 3, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
+                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes, want_res_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 4, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

@@ -68,7 +68,7 @@ int liegen_factors_prior_se2(
     double *LIEGEN_FACTORS_RESTRICT res,
     double *LIEGEN_FACTORS_RESTRICT res_D_x);
 
-/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_factors_prior_se2_batch(
     ptrdiff_t n,
     liegen_factors_in x,

@@ -45,7 +45,8 @@ static void block_jacobians(
     const lanes *x,
     const lanes *z,
     lanes *res,
-    lanes *res_D_x)
+    lanes *res_D_x,
+    int want_res_D_x)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -68,20 +69,22 @@ static void block_jacobians(
     const lanes t10 = 1.0 - t1 * t9;
     const lanes t11 = t0 * 0.5;
     const lanes t12 = t10 * t8 + t11 * t7;
-    const lanes t13 = t0 * t9;
     const lanes t14 = t10 * t7 - t8 * t11;
     res[0] = t12;
     res[1] = t14;
     res[2] = t0;
-    res_D_x[0] = t10;
-    res_D_x[1] = -t11;
-    res_D_x[2] = t12 * t13 + 0.5 * t14;
-    res_D_x[3] = t11;
-    res_D_x[4] = t10;
-    res_D_x[5] = t14 * t13 + t12 * (-0.5);
-    res_D_x[6] = lanes_of(0.0);
-    res_D_x[7] = lanes_of(0.0);
-    res_D_x[8] = lanes_of(1.0);
+    if (want_res_D_x) {
+        const lanes t13 = t0 * t9;
+        res_D_x[0] = t10;
+        res_D_x[1] = -t11;
+        res_D_x[2] = t12 * t13 + 0.5 * t14;
+        res_D_x[3] = t11;
+        res_D_x[4] = t10;
+        res_D_x[5] = t14 * t13 + t12 * (-0.5);
+        res_D_x[6] = lanes_of(0.0);
+        res_D_x[7] = lanes_of(0.0);
+        res_D_x[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -99,7 +102,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_x, 9, n, k);
 }
 
-int liegen_factors_prior_se2_batch(
+LANES_WHOLE int liegen_factors_prior_se2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in z,
@@ -107,7 +110,8 @@ int liegen_factors_prior_se2_batch(
     liegen_factors_out res_D_x,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int jacobians = want_res_D_x;
     const int stream = lanes_streams(n, jacobians ? 12 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -128,16 +132,14 @@ int liegen_factors_prior_se2_batch(
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
+                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes, want_res_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 3, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

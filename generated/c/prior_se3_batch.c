@@ -83,7 +83,8 @@ static void block_jacobians(
     const lanes *x,
     const lanes *z,
     lanes *res,
-    lanes *res_D_x)
+    lanes *res_D_x,
+    int want_res_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -152,63 +153,65 @@ static void block_jacobians(
     const lanes t50 = t36 - t37;
     const lanes t51 = t44 + t45;
     const lanes t52 = t39 * t49 + (t31 * t50 + t35 * t51);
-    const lanes t53 = t13 * t52 + (t11 * t40 + t12 * t47);
-    const lanes t54 = t15 * (t15 * (-3.328472381969466e-08) + 0.002774415758409675);
-    const lanes t55 = t15 * (t15 * (t54 - 3.524948491346294) + 1618.3819503577756);
-    const lanes t56 = t15 * (t15 * (t55 - 330365.05572739476) + 30057589.92197956);
-    const lanes t57 = (t56 - 989919839.2921487) * (t19 / t18) - 0.002777777777777778;
-    const lanes t58 = t53 * t57;
-    const lanes t59 = t53 * (t21 * (-2.0)) + t15 * t58;
-    const lanes t60 = t11 * t58;
-    const lanes t61 = t23 * t47 + t40 * t41 - t12 * t60;
-    const lanes t62 = 0.5 * t52;
-    const lanes t63 = t23 * t52 + t40 * t48 - t13 * t60;
-    const lanes t64 = 0.5 * t47;
-    const lanes t65 = t12 * t58;
-    const lanes t66 = t41 * t52 + t47 * t48 - t13 * t65;
-    const lanes t67 = 0.5 * t40;
     res[0] = t11;
     res[1] = t12;
     res[2] = t13;
     res[3] = t40;
     res[4] = t47;
     res[5] = t52;
-    res_D_x[0] = t24;
-    res_D_x[1] = t43;
-    res_D_x[2] = t50;
-    res_D_x[3] = lanes_of(0.0);
-    res_D_x[4] = lanes_of(0.0);
-    res_D_x[5] = lanes_of(0.0);
-    res_D_x[6] = t34;
-    res_D_x[7] = t42;
-    res_D_x[8] = t51;
-    res_D_x[9] = lanes_of(0.0);
-    res_D_x[10] = lanes_of(0.0);
-    res_D_x[11] = lanes_of(0.0);
-    res_D_x[12] = t38;
-    res_D_x[13] = t46;
-    res_D_x[14] = t49;
-    res_D_x[15] = lanes_of(0.0);
-    res_D_x[16] = lanes_of(0.0);
-    res_D_x[17] = lanes_of(0.0);
-    res_D_x[18] = t59 + t40 * (2.0 * t23) - t11 * t60;
-    res_D_x[19] = t61 - t62;
-    res_D_x[20] = t63 + t64;
-    res_D_x[21] = t24;
-    res_D_x[22] = t43;
-    res_D_x[23] = t50;
-    res_D_x[24] = t61 + t62;
-    res_D_x[25] = t59 + t47 * (2.0 * t41) - t12 * t65;
-    res_D_x[26] = t66 - t67;
-    res_D_x[27] = t34;
-    res_D_x[28] = t42;
-    res_D_x[29] = t51;
-    res_D_x[30] = t63 - t64;
-    res_D_x[31] = t66 + t67;
-    res_D_x[32] = t59 + t52 * (2.0 * t48) - t14 * t58;
-    res_D_x[33] = t38;
-    res_D_x[34] = t46;
-    res_D_x[35] = t49;
+    if (want_res_D_x) {
+        const lanes t53 = t13 * t52 + (t11 * t40 + t12 * t47);
+        const lanes t54 = t15 * (t15 * (-3.328472381969466e-08) + 0.002774415758409675);
+        const lanes t55 = t15 * (t15 * (t54 - 3.524948491346294) + 1618.3819503577756);
+        const lanes t56 = t15 * (t15 * (t55 - 330365.05572739476) + 30057589.92197956);
+        const lanes t57 = (t56 - 989919839.2921487) * (t19 / t18) - 0.002777777777777778;
+        const lanes t58 = t53 * t57;
+        const lanes t59 = t53 * (t21 * (-2.0)) + t15 * t58;
+        const lanes t60 = t11 * t58;
+        const lanes t61 = t23 * t47 + t40 * t41 - t12 * t60;
+        const lanes t62 = 0.5 * t52;
+        const lanes t63 = t23 * t52 + t40 * t48 - t13 * t60;
+        const lanes t64 = 0.5 * t47;
+        const lanes t65 = t12 * t58;
+        const lanes t66 = t41 * t52 + t47 * t48 - t13 * t65;
+        const lanes t67 = 0.5 * t40;
+        res_D_x[0] = t24;
+        res_D_x[1] = t43;
+        res_D_x[2] = t50;
+        res_D_x[3] = lanes_of(0.0);
+        res_D_x[4] = lanes_of(0.0);
+        res_D_x[5] = lanes_of(0.0);
+        res_D_x[6] = t34;
+        res_D_x[7] = t42;
+        res_D_x[8] = t51;
+        res_D_x[9] = lanes_of(0.0);
+        res_D_x[10] = lanes_of(0.0);
+        res_D_x[11] = lanes_of(0.0);
+        res_D_x[12] = t38;
+        res_D_x[13] = t46;
+        res_D_x[14] = t49;
+        res_D_x[15] = lanes_of(0.0);
+        res_D_x[16] = lanes_of(0.0);
+        res_D_x[17] = lanes_of(0.0);
+        res_D_x[18] = t59 + t40 * (2.0 * t23) - t11 * t60;
+        res_D_x[19] = t61 - t62;
+        res_D_x[20] = t63 + t64;
+        res_D_x[21] = t24;
+        res_D_x[22] = t43;
+        res_D_x[23] = t50;
+        res_D_x[24] = t61 + t62;
+        res_D_x[25] = t59 + t47 * (2.0 * t41) - t12 * t65;
+        res_D_x[26] = t66 - t67;
+        res_D_x[27] = t34;
+        res_D_x[28] = t42;
+        res_D_x[29] = t51;
+        res_D_x[30] = t63 - t64;
+        res_D_x[31] = t66 + t67;
+        res_D_x[32] = t59 + t52 * (2.0 * t48) - t14 * t58;
+        res_D_x[33] = t38;
+        res_D_x[34] = t46;
+        res_D_x[35] = t49;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -226,7 +229,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_x, 36, n, k);
 }
 
-int liegen_factors_prior_se3_batch(
+LANES_WHOLE int liegen_factors_prior_se3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in z,
@@ -234,7 +237,8 @@ int liegen_factors_prior_se3_batch(
     liegen_factors_out res_D_x,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int jacobians = want_res_D_x;
     const int stream = lanes_streams(n, jacobians ? 42 : 6);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -255,16 +259,14 @@ int liegen_factors_prior_se3_batch(
             liegen_factors_load(x, 7, k, count, x_lanes);
             liegen_factors_load(z, 7, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
+                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes, want_res_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 6, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 36, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 36, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

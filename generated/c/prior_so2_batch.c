@@ -27,14 +27,17 @@ static void block_jacobians(
     const lanes *x,
     const lanes *z,
     lanes *res,
-    lanes *res_D_x)
+    lanes *res_D_x,
+    int want_res_D_x)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
     const lanes z_c = z[0];
     const lanes z_s = z[1];
     res[0] = lanes_atan2(x_s * z_c - x_c * z_s, x_c * z_c + x_s * z_s);
-    res_D_x[0] = lanes_of(1.0);
+    if (want_res_D_x) {
+        res_D_x[0] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -52,7 +55,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_x, 1, n, k);
 }
 
-int liegen_factors_prior_so2_batch(
+LANES_WHOLE int liegen_factors_prior_so2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in z,
@@ -60,7 +63,8 @@ int liegen_factors_prior_so2_batch(
     liegen_factors_out res_D_x,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int jacobians = want_res_D_x;
     const int stream = lanes_streams(n, jacobians ? 2 : 1);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -81,16 +85,14 @@ int liegen_factors_prior_so2_batch(
             liegen_factors_load(x, 2, k, count, x_lanes);
             liegen_factors_load(z, 2, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
+                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes, want_res_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 1, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 1, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 1, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

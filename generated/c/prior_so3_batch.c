@@ -44,7 +44,8 @@ static void block_jacobians(
     const lanes *x,
     const lanes *z,
     lanes *res,
-    lanes *res_D_x)
+    lanes *res_D_x,
+    int want_res_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -68,32 +69,34 @@ static void block_jacobians(
     const lanes t11 = t10 * (x_qx * z_qw - x_qw * z_qx - x_qz * z_qy + x_qy * z_qz);
     const lanes t12 = t10 * (x_qy * z_qw + x_qz * z_qx - x_qw * z_qy - x_qx * z_qz);
     const lanes t13 = t10 * (x_qz * z_qw - x_qy * z_qx + x_qx * z_qy - x_qw * z_qz);
-    const lanes t14 = t11 * t11 + t12 * t12 + t13 * t13;
-    const lanes t15 = t14 * (2.25732705039638e-06 * t14 - 0.07465244042649771);
-    const lanes t16 = t14 * (t15 + 38.45987747204322) - 3799.5172048139725;
-    const lanes t17 = t14 * (t14 * (t14 - 635.5207748643182) + 92825.69243378133);
-    const lanes t18 = 0.08333333333333333 + t16 * (t14 / (t17 - 2735652.38746603));
-    const lanes t19 = 1.0 - t14 * t18;
-    const lanes t20 = t11 * t18;
-    const lanes t21 = t12 * t20;
-    const lanes t22 = t13 * 0.5;
-    const lanes t23 = t13 * t20;
-    const lanes t24 = t12 * 0.5;
-    const lanes t25 = t12 * t18;
-    const lanes t26 = t13 * t25;
-    const lanes t27 = t11 * 0.5;
     res[0] = t11;
     res[1] = t12;
     res[2] = t13;
-    res_D_x[0] = t19 + t11 * t20;
-    res_D_x[1] = t21 - t22;
-    res_D_x[2] = t23 + t24;
-    res_D_x[3] = t21 + t22;
-    res_D_x[4] = t19 + t12 * t25;
-    res_D_x[5] = t26 - t27;
-    res_D_x[6] = t23 - t24;
-    res_D_x[7] = t26 + t27;
-    res_D_x[8] = t19 + t13 * (t13 * t18);
+    if (want_res_D_x) {
+        const lanes t14 = t11 * t11 + t12 * t12 + t13 * t13;
+        const lanes t15 = t14 * (2.25732705039638e-06 * t14 - 0.07465244042649771);
+        const lanes t16 = t14 * (t15 + 38.45987747204322) - 3799.5172048139725;
+        const lanes t17 = t14 * (t14 * (t14 - 635.5207748643182) + 92825.69243378133);
+        const lanes t18 = 0.08333333333333333 + t16 * (t14 / (t17 - 2735652.38746603));
+        const lanes t19 = 1.0 - t14 * t18;
+        const lanes t20 = t11 * t18;
+        const lanes t21 = t12 * t20;
+        const lanes t22 = t13 * 0.5;
+        const lanes t23 = t13 * t20;
+        const lanes t24 = t12 * 0.5;
+        const lanes t25 = t12 * t18;
+        const lanes t26 = t13 * t25;
+        const lanes t27 = t11 * 0.5;
+        res_D_x[0] = t19 + t11 * t20;
+        res_D_x[1] = t21 - t22;
+        res_D_x[2] = t23 + t24;
+        res_D_x[3] = t21 + t22;
+        res_D_x[4] = t19 + t12 * t25;
+        res_D_x[5] = t26 - t27;
+        res_D_x[6] = t23 - t24;
+        res_D_x[7] = t26 + t27;
+        res_D_x[8] = t19 + t13 * (t13 * t18);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -111,7 +114,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_x, 9, n, k);
 }
 
-int liegen_factors_prior_so3_batch(
+LANES_WHOLE int liegen_factors_prior_so3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in z,
@@ -119,7 +122,8 @@ int liegen_factors_prior_so3_batch(
     liegen_factors_out res_D_x,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int jacobians = want_res_D_x;
     const int stream = lanes_streams(n, jacobians ? 12 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -140,16 +144,14 @@ int liegen_factors_prior_so3_batch(
             liegen_factors_load(x, 4, k, count, x_lanes);
             liegen_factors_load(z, 4, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes);
+                block_jacobians(x_lanes, z_lanes, res_lanes, res_D_x_lanes, want_res_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 3, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 9, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

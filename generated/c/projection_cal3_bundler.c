@@ -42,7 +42,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 58 (residual only), 131 (with Jacobians)
+ * Operations: 58 (residual only), 129 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -82,30 +82,30 @@ int liegen_factors_projection_cal3_bundler_res(
     const double K_v0 = K[4];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_qz * 2.0;
-    const double t1 = 2.0 * x_qy;
-    const double t2 = x_qx * 2.0;
-    const double t3 = x_qx * t2;
-    const double t4 = x_qw * t2;
-    const double t5 = x_y - p_y;
-    const double t6 = t0 * x_qy;
-    const double t7 = x_qw * t1;
-    const double t8 = x_qx * t0;
-    const double t9 = 1.0 - x_qy * t1;
+    const double t0 = x_qx * 2.0;
+    const double t1 = x_qz * 2.0;
+    const double t2 = x_qw * t0;
+    const double t3 = t1 * x_qy;
+    const double t4 = 2.0 * x_qy;
+    const double t5 = x_qw * t4;
+    const double t6 = x_qx * t1;
+    const double t7 = x_qx * t0;
+    const double t8 = 1.0 - x_qy * t4;
+    const double t9 = x_y - p_y;
     const double t10 = x_x - p_x;
     const double t11 = x_z - p_z;
-    const double t12 = t11 * (t9 - t3) + (t10 * (t8 + t7) + t5 * (t6 - t4));
+    const double t12 = t11 * (t8 - t7) + (t10 * (t6 + t5) + t9 * (t3 - t2));
     const int status = ((t12 < 0.0) ? 0 : 1);
     if (status) {
         liegen_factors_projection_cal3_bundler_fill(res, 2);
         return status;
     }
-    const double t13 = t0 * x_qw;
-    const double t14 = x_qx * t1;
-    const double t15 = x_qz * t0;
-    const double t16 = t10 * (t14 - t13) + t5 * (1.0 - t15 - t3);
-    const double t17 = t11 * (t8 - t7) + (t10 * (t9 - t15) + t5 * (t14 + t13));
-    const double t18 = (t11 * (t6 + t4) + t16) / t12;
+    const double t13 = t1 * x_qw;
+    const double t14 = x_qx * t4;
+    const double t15 = x_qz * t1;
+    const double t16 = t11 * (t3 + t2) + t10 * (t14 - t13);
+    const double t17 = t10 * (t8 - t15) + (t11 * (t6 - t5) + t9 * (t14 + t13));
+    const double t18 = (t9 * (1.0 - t7 - t15) + t16) / t12;
     const double t19 = t17 / t12;
     const double t20 = t19 * t19 + t18 * t18;
     const double t21 = K_f * (1.0 + t20 * (K_k1 + t20 * K_k2));
@@ -142,20 +142,20 @@ int liegen_factors_projection_cal3_bundler(
     const double K_v0 = K[4];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_z - p_z;
-    const double t1 = x_qy * 2.0;
-    const double t2 = 1.0 - x_qy * t1;
+    const double t0 = x_y - p_y;
+    const double t1 = 2.0 * x_qz;
+    const double t2 = x_qy * t1;
     const double t3 = 2.0 * x_qx;
-    const double t4 = x_qx * t3;
+    const double t4 = t3 * x_qw;
     const double t5 = t2 - t4;
     const double t6 = x_x - p_x;
-    const double t7 = 2.0 * x_qz;
-    const double t8 = x_qx * t7;
-    const double t9 = t1 * x_qw;
-    const double t10 = t8 + t9;
-    const double t11 = x_y - p_y;
-    const double t12 = x_qy * t7;
-    const double t13 = t3 * x_qw;
+    const double t7 = t1 * x_qx;
+    const double t8 = x_qy * 2.0;
+    const double t9 = x_qw * t8;
+    const double t10 = t7 + t9;
+    const double t11 = x_z - p_z;
+    const double t12 = 1.0 - x_qy * t8;
+    const double t13 = x_qx * t3;
     const double t14 = t12 - t13;
     const double t15 = t11 * t14 + (t0 * t5 + t6 * t10);
     const int status = ((t15 < 0.0) ? 0 : 1);
@@ -165,20 +165,20 @@ int liegen_factors_projection_cal3_bundler(
         liegen_factors_projection_cal3_bundler_fill(res_D_p, 6);
         return status;
     }
-    const double t16 = t8 - t9;
-    const double t17 = x_qz * t7;
-    const double t18 = t2 - t17;
-    const double t19 = t1 * x_qx;
-    const double t20 = t7 * x_qw;
-    const double t21 = t19 + t20;
-    const double t22 = t11 * t21 + (t0 * t16 + t6 * t18);
+    const double t16 = x_qx * t8;
+    const double t17 = t1 * x_qw;
+    const double t18 = t16 + t17;
+    const double t19 = t7 - t9;
+    const double t20 = x_qz * t1;
+    const double t21 = t12 - t20;
+    const double t22 = t6 * t21 + (t0 * t18 + t11 * t19);
     const double t23 = 1.0 / t15;
     const double t24 = t22 * t23;
     const double t25 = K_f * t24;
-    const double t26 = t12 + t13;
-    const double t27 = t19 - t20;
-    const double t28 = t17 + (t4 - 1.0);
-    const double t29 = t0 * t26 + t6 * t27 - t11 * t28;
+    const double t26 = t2 + t4;
+    const double t27 = t16 - t17;
+    const double t28 = t13 + (t20 - 1.0);
+    const double t29 = t6 * t27 + (t11 * t26 - t0 * t28);
     const double t30 = t23 * t29;
     const double t31 = t24 * t24 + t30 * t30;
     const double t32 = t31 * K_k2;
@@ -190,40 +190,38 @@ int liegen_factors_projection_cal3_bundler(
     const double t38 = t25 * t37;
     const double t39 = t24 * t36;
     const double t40 = K_f * (t34 + t24 * t39);
-    const double t41 = t23 * t24;
-    const double t42 = t23 * t30;
-    const double t43 = t40 * t41 + t38 * t42;
+    const double t41 = t23 * t40;
+    const double t42 = t23 * t38;
+    const double t43 = t24 * t41 + t30 * t42;
     const double t44 = -t22;
-    const double t45 = t23 * t40;
-    const double t46 = t23 * t38;
-    const double t47 = K_f * (t34 + t30 * t37);
-    const double t48 = t35 * t39;
-    const double t49 = t41 * t48 + t42 * t47;
-    const double t50 = t23 * t48;
-    const double t51 = t23 * t47;
+    const double t45 = K_f * (t34 + t30 * t37);
+    const double t46 = t35 * t39;
+    const double t47 = t23 * t46;
+    const double t48 = t23 * t45;
+    const double t49 = t24 * t47 + t30 * t48;
     res[0] = t25 * t34 + (K_u0 - z_x);
     res[1] = t34 * t35 + (K_v0 - z_y);
     if (res_D_x != NULL) {
         res_D_x[0] = t38 + t29 * t43;
         res_D_x[1] = t43 * t44 - t40;
-        res_D_x[2] = t29 * t45 + t44 * t46;
-        res_D_x[3] = t45;
-        res_D_x[4] = t46;
+        res_D_x[2] = t29 * t41 + t42 * t44;
+        res_D_x[3] = t41;
+        res_D_x[4] = t42;
         res_D_x[5] = -t43;
-        res_D_x[6] = t47 + t29 * t49;
-        res_D_x[7] = t44 * t49 - t48;
-        res_D_x[8] = t29 * t50 + t44 * t51;
-        res_D_x[9] = t50;
-        res_D_x[10] = t51;
+        res_D_x[6] = t45 + t29 * t49;
+        res_D_x[7] = t44 * t49 - t46;
+        res_D_x[8] = t29 * t47 + t44 * t48;
+        res_D_x[9] = t47;
+        res_D_x[10] = t48;
         res_D_x[11] = -t49;
     }
     if (res_D_p != NULL) {
-        res_D_p[0] = t10 * t43 - t18 * t45 - t27 * t46;
-        res_D_p[1] = t28 * t46 + (t14 * t43 - t21 * t45);
-        res_D_p[2] = t5 * t43 - t16 * t45 - t26 * t46;
-        res_D_p[3] = t10 * t49 - t18 * t50 - t27 * t51;
-        res_D_p[4] = t28 * t51 + (t14 * t49 - t21 * t50);
-        res_D_p[5] = t5 * t49 - t16 * t50 - t26 * t51;
+        res_D_p[0] = t10 * t43 - (t27 * t42 + t21 * t41);
+        res_D_p[1] = t5 * t43 + (t28 * t42 - t18 * t41);
+        res_D_p[2] = t14 * t43 - (t26 * t42 + t19 * t41);
+        res_D_p[3] = t10 * t49 - (t21 * t47 + t27 * t48);
+        res_D_p[4] = t5 * t49 + (t28 * t48 - t18 * t47);
+        res_D_p[5] = t14 * t49 - (t19 * t47 + t26 * t48);
     }
     return 0;
 }

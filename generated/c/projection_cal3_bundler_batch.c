@@ -35,25 +35,25 @@ static void block_value(
     const lanes K_v0 = K[4];
     const lanes z_x = z[0];
     const lanes z_y = z[1];
-    const lanes t0 = x_qz * 2.0;
-    const lanes t1 = 2.0 * x_qy;
-    const lanes t2 = x_qx * 2.0;
-    const lanes t3 = x_qx * t2;
-    const lanes t4 = x_qw * t2;
-    const lanes t5 = x_y - p_y;
-    const lanes t6 = t0 * x_qy;
-    const lanes t7 = x_qw * t1;
-    const lanes t8 = x_qx * t0;
-    const lanes t9 = 1.0 - x_qy * t1;
+    const lanes t0 = x_qx * 2.0;
+    const lanes t1 = x_qz * 2.0;
+    const lanes t2 = x_qw * t0;
+    const lanes t3 = t1 * x_qy;
+    const lanes t4 = 2.0 * x_qy;
+    const lanes t5 = x_qw * t4;
+    const lanes t6 = x_qx * t1;
+    const lanes t7 = x_qx * t0;
+    const lanes t8 = 1.0 - x_qy * t4;
+    const lanes t9 = x_y - p_y;
     const lanes t10 = x_x - p_x;
     const lanes t11 = x_z - p_z;
-    const lanes t12 = t11 * (t9 - t3) + (t10 * (t8 + t7) + t5 * (t6 - t4));
-    const lanes t13 = t0 * x_qw;
-    const lanes t14 = x_qx * t1;
-    const lanes t15 = x_qz * t0;
-    const lanes t16 = t10 * (t14 - t13) + t5 * (1.0 - t15 - t3);
-    const lanes t17 = t11 * (t8 - t7) + (t10 * (t9 - t15) + t5 * (t14 + t13));
-    const lanes t18 = (t11 * (t6 + t4) + t16) / t12;
+    const lanes t12 = t11 * (t8 - t7) + (t10 * (t6 + t5) + t9 * (t3 - t2));
+    const lanes t13 = t1 * x_qw;
+    const lanes t14 = x_qx * t4;
+    const lanes t15 = x_qz * t1;
+    const lanes t16 = t11 * (t3 + t2) + t10 * (t14 - t13);
+    const lanes t17 = t10 * (t8 - t15) + (t11 * (t6 - t5) + t9 * (t14 + t13));
+    const lanes t18 = (t9 * (1.0 - t7 - t15) + t16) / t12;
     const lanes t19 = t17 / t12;
     const lanes t20 = t19 * t19 + t18 * t18;
     const lanes t21 = K_f * (1.0 + t20 * (K_k1 + t20 * K_k2));
@@ -71,6 +71,8 @@ static void block_jacobians(
     lanes *res,
     lanes *res_D_x,
     lanes *res_D_p,
+    int want_res_D_x,
+    int want_res_D_p,
     lanes_mask *held)
 {
     const lanes x_qx = x[0];
@@ -90,36 +92,36 @@ static void block_jacobians(
     const lanes K_v0 = K[4];
     const lanes z_x = z[0];
     const lanes z_y = z[1];
-    const lanes t0 = x_z - p_z;
-    const lanes t1 = x_qy * 2.0;
-    const lanes t2 = 1.0 - x_qy * t1;
+    const lanes t0 = x_y - p_y;
+    const lanes t1 = 2.0 * x_qz;
+    const lanes t2 = x_qy * t1;
     const lanes t3 = 2.0 * x_qx;
-    const lanes t4 = x_qx * t3;
+    const lanes t4 = t3 * x_qw;
     const lanes t5 = t2 - t4;
     const lanes t6 = x_x - p_x;
-    const lanes t7 = 2.0 * x_qz;
-    const lanes t8 = x_qx * t7;
-    const lanes t9 = t1 * x_qw;
-    const lanes t10 = t8 + t9;
-    const lanes t11 = x_y - p_y;
-    const lanes t12 = x_qy * t7;
-    const lanes t13 = t3 * x_qw;
+    const lanes t7 = t1 * x_qx;
+    const lanes t8 = x_qy * 2.0;
+    const lanes t9 = x_qw * t8;
+    const lanes t10 = t7 + t9;
+    const lanes t11 = x_z - p_z;
+    const lanes t12 = 1.0 - x_qy * t8;
+    const lanes t13 = x_qx * t3;
     const lanes t14 = t12 - t13;
     const lanes t15 = t11 * t14 + (t0 * t5 + t6 * t10);
-    const lanes t16 = t8 - t9;
-    const lanes t17 = x_qz * t7;
-    const lanes t18 = t2 - t17;
-    const lanes t19 = t1 * x_qx;
-    const lanes t20 = t7 * x_qw;
-    const lanes t21 = t19 + t20;
-    const lanes t22 = t11 * t21 + (t0 * t16 + t6 * t18);
+    const lanes t16 = x_qx * t8;
+    const lanes t17 = t1 * x_qw;
+    const lanes t18 = t16 + t17;
+    const lanes t19 = t7 - t9;
+    const lanes t20 = x_qz * t1;
+    const lanes t21 = t12 - t20;
+    const lanes t22 = t6 * t21 + (t0 * t18 + t11 * t19);
     const lanes t23 = 1.0 / t15;
     const lanes t24 = t22 * t23;
     const lanes t25 = K_f * t24;
-    const lanes t26 = t12 + t13;
-    const lanes t27 = t19 - t20;
-    const lanes t28 = t17 + (t4 - 1.0);
-    const lanes t29 = t0 * t26 + t6 * t27 - t11 * t28;
+    const lanes t26 = t2 + t4;
+    const lanes t27 = t16 - t17;
+    const lanes t28 = t13 + (t20 - 1.0);
+    const lanes t29 = t6 * t27 + (t11 * t26 - t0 * t28);
     const lanes t30 = t23 * t29;
     const lanes t31 = t24 * t24 + t30 * t30;
     const lanes t32 = t31 * K_k2;
@@ -131,38 +133,40 @@ static void block_jacobians(
     const lanes t38 = t25 * t37;
     const lanes t39 = t24 * t36;
     const lanes t40 = K_f * (t34 + t24 * t39);
-    const lanes t41 = t23 * t24;
-    const lanes t42 = t23 * t30;
-    const lanes t43 = t40 * t41 + t38 * t42;
-    const lanes t44 = -t22;
-    const lanes t45 = t23 * t40;
-    const lanes t46 = t23 * t38;
-    const lanes t47 = K_f * (t34 + t30 * t37);
-    const lanes t48 = t35 * t39;
-    const lanes t49 = t41 * t48 + t42 * t47;
-    const lanes t50 = t23 * t48;
-    const lanes t51 = t23 * t47;
+    const lanes t41 = t23 * t40;
+    const lanes t42 = t23 * t38;
+    const lanes t43 = t24 * t41 + t30 * t42;
+    const lanes t45 = K_f * (t34 + t30 * t37);
+    const lanes t46 = t35 * t39;
+    const lanes t47 = t23 * t46;
+    const lanes t48 = t23 * t45;
+    const lanes t49 = t24 * t47 + t30 * t48;
     held[0] = t15 < 0.0;
     res[0] = t25 * t34 + (K_u0 - z_x);
     res[1] = t34 * t35 + (K_v0 - z_y);
-    res_D_x[0] = t38 + t29 * t43;
-    res_D_x[1] = t43 * t44 - t40;
-    res_D_x[2] = t29 * t45 + t44 * t46;
-    res_D_x[3] = t45;
-    res_D_x[4] = t46;
-    res_D_x[5] = -t43;
-    res_D_x[6] = t47 + t29 * t49;
-    res_D_x[7] = t44 * t49 - t48;
-    res_D_x[8] = t29 * t50 + t44 * t51;
-    res_D_x[9] = t50;
-    res_D_x[10] = t51;
-    res_D_x[11] = -t49;
-    res_D_p[0] = t10 * t43 - t18 * t45 - t27 * t46;
-    res_D_p[1] = t28 * t46 + (t14 * t43 - t21 * t45);
-    res_D_p[2] = t5 * t43 - t16 * t45 - t26 * t46;
-    res_D_p[3] = t10 * t49 - t18 * t50 - t27 * t51;
-    res_D_p[4] = t28 * t51 + (t14 * t49 - t21 * t50);
-    res_D_p[5] = t5 * t49 - t16 * t50 - t26 * t51;
+    if (want_res_D_x) {
+        const lanes t44 = -t22;
+        res_D_x[0] = t38 + t29 * t43;
+        res_D_x[1] = t43 * t44 - t40;
+        res_D_x[2] = t29 * t41 + t42 * t44;
+        res_D_x[3] = t41;
+        res_D_x[4] = t42;
+        res_D_x[5] = -t43;
+        res_D_x[6] = t45 + t29 * t49;
+        res_D_x[7] = t44 * t49 - t46;
+        res_D_x[8] = t29 * t47 + t44 * t48;
+        res_D_x[9] = t47;
+        res_D_x[10] = t48;
+        res_D_x[11] = -t49;
+    }
+    if (want_res_D_p) {
+        res_D_p[0] = t10 * t43 - (t27 * t42 + t21 * t41);
+        res_D_p[1] = t5 * t43 + (t28 * t42 - t18 * t41);
+        res_D_p[2] = t14 * t43 - (t26 * t42 + t19 * t41);
+        res_D_p[3] = t10 * t49 - (t21 * t47 + t27 * t48);
+        res_D_p[4] = t5 * t49 + (t28 * t48 - t18 * t47);
+        res_D_p[5] = t14 * t49 - (t19 * t47 + t26 * t48);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -186,7 +190,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_p, 6, n, k);
 }
 
-int liegen_factors_projection_cal3_bundler_batch(
+LANES_WHOLE int liegen_factors_projection_cal3_bundler_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in p,
@@ -197,7 +201,9 @@ int liegen_factors_projection_cal3_bundler_batch(
     liegen_factors_out res_D_p,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_p.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_p = res_D_p.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_p;
     const int stream = lanes_streams(n, jacobians ? 20 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -226,7 +232,7 @@ int liegen_factors_projection_cal3_bundler_batch(
             liegen_factors_load(z, 2, k, count, z_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_p_lanes,
-                    held);
+                    want_res_D_x, want_res_D_p, held);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, held);
@@ -235,16 +241,12 @@ int liegen_factors_projection_cal3_bundler_batch(
             violated |= broken;
             if (broken) {
                 lanes_blank(res_lanes, 2, held, 1);
-            }
-            if (broken && jacobians) {
-                lanes_blank(res_D_x_lanes, 12, held, 1);
-                lanes_blank(res_D_p_lanes, 6, held, 1);
+                if (want_res_D_x) lanes_blank(res_D_x_lanes, 12, held, 1);
+                if (want_res_D_p) lanes_blank(res_D_p_lanes, 6, held, 1);
             }
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_p) liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

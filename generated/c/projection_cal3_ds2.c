@@ -42,7 +42,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 75 (residual only), 173 (with Jacobians)
+ * Operations: 75 (residual only), 171 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -86,39 +86,39 @@ int liegen_factors_projection_cal3_ds2_res(
     const double K_p2 = K[8];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_qz * 2.0;
-    const double t1 = 2.0 * x_qy;
-    const double t2 = x_qx * 2.0;
-    const double t3 = x_qx * t2;
-    const double t4 = x_qw * t2;
-    const double t5 = x_y - p_y;
-    const double t6 = t0 * x_qy;
-    const double t7 = x_qw * t1;
-    const double t8 = x_qx * t0;
-    const double t9 = 1.0 - x_qy * t1;
+    const double t0 = x_qx * 2.0;
+    const double t1 = x_qz * 2.0;
+    const double t2 = x_qw * t0;
+    const double t3 = t1 * x_qy;
+    const double t4 = 2.0 * x_qy;
+    const double t5 = x_qw * t4;
+    const double t6 = x_qx * t1;
+    const double t7 = x_qx * t0;
+    const double t8 = 1.0 - x_qy * t4;
+    const double t9 = x_y - p_y;
     const double t10 = x_x - p_x;
     const double t11 = x_z - p_z;
-    const double t12 = t11 * (t9 - t3) + (t10 * (t8 + t7) + t5 * (t6 - t4));
+    const double t12 = t11 * (t8 - t7) + (t10 * (t6 + t5) + t9 * (t3 - t2));
     const int status = ((t12 < 0.0) ? 0 : 1);
     if (status) {
         liegen_factors_projection_cal3_ds2_fill(res, 2);
         return status;
     }
-    const double t13 = t0 * x_qw;
-    const double t14 = x_qx * t1;
-    const double t15 = x_qz * t0;
-    const double t16 = t10 * (t14 - t13) + t5 * (1.0 - t15 - t3);
-    const double t17 = t11 * (t8 - t7) + (t10 * (t9 - t15) + t5 * (t14 + t13));
-    const double t18 = (t11 * (t6 + t4) + t16) / t12;
+    const double t13 = t1 * x_qw;
+    const double t14 = x_qx * t4;
+    const double t15 = x_qz * t1;
+    const double t16 = t11 * (t3 + t2) + t10 * (t14 - t13);
+    const double t17 = t10 * (t8 - t15) + (t11 * (t6 - t5) + t9 * (t14 + t13));
+    const double t18 = (t9 * (1.0 - t7 - t15) + t16) / t12;
     const double t19 = t17 / t12;
     const double t20 = t18 * t18;
     const double t21 = t19 * t19;
     const double t22 = t21 + t20;
-    const double t23 = 1.0 + t22 * (K_k1 + t22 * K_k2);
-    const double t24 = 2.0 * (t19 * t18);
-    const double t25 = K_p1 * (t22 + 2.0 * t20) + (t18 * t23 + t24 * K_p2);
-    const double t26 = K_fx * (K_p2 * (t22 + 2.0 * t21) + (t19 * t23 + K_p1 * t24));
-    res[0] = K_s * t25 + (t26 + (K_u0 - z_x));
+    const double t23 = t18 * (2.0 * t19);
+    const double t24 = 1.0 + t22 * (K_k1 + t22 * K_k2);
+    const double t25 = t18 * t24 + (t23 * K_p2 + K_p1 * (t22 + 2.0 * t20));
+    const double t26 = K_fx * (t19 * t24 + (t23 * K_p1 + K_p2 * (t22 + 2.0 * t21)));
+    res[0] = t26 + (K_u0 - z_x + K_s * t25);
     res[1] = t25 * K_fy + (K_v0 - z_y);
     return 0;
 }
@@ -213,40 +213,38 @@ int liegen_factors_projection_cal3_ds2(
     const double t48 = K_p2 * (t46 + t24 * 4.0) + (t30 * t36 + (t35 + t24 * t47));
     const double t49 = t30 * (t39 + t47) + K_p1 * t46;
     const double t50 = K_fx * t48 + K_s * t49;
-    const double t51 = t23 * t24;
-    const double t52 = t23 * t30;
-    const double t53 = t50 * t51 + t45 * t52;
+    const double t51 = t23 * t50;
+    const double t52 = t23 * t45;
+    const double t53 = t24 * t51 + t30 * t52;
     const double t54 = -t22;
-    const double t55 = t23 * t50;
-    const double t56 = t23 * t45;
-    const double t57 = K_fy * t44;
-    const double t58 = K_fy * t49;
-    const double t59 = t51 * t58 + t52 * t57;
-    const double t60 = t23 * t58;
-    const double t61 = t23 * t57;
+    const double t55 = K_fy * t44;
+    const double t56 = K_fy * t49;
+    const double t57 = t23 * t56;
+    const double t58 = t23 * t55;
+    const double t59 = t24 * t57 + t30 * t58;
     res[0] = K_s * t40 + (t38 + (K_u0 - z_x));
     res[1] = t40 * K_fy + (K_v0 - z_y);
     if (res_D_x != NULL) {
         res_D_x[0] = t45 + t29 * t53;
         res_D_x[1] = t53 * t54 - t50;
-        res_D_x[2] = t29 * t55 + t54 * t56;
-        res_D_x[3] = t55;
-        res_D_x[4] = t56;
+        res_D_x[2] = t29 * t51 + t52 * t54;
+        res_D_x[3] = t51;
+        res_D_x[4] = t52;
         res_D_x[5] = -t53;
-        res_D_x[6] = t57 + t29 * t59;
-        res_D_x[7] = t54 * t59 - t58;
-        res_D_x[8] = t29 * t60 + t54 * t61;
-        res_D_x[9] = t60;
-        res_D_x[10] = t61;
+        res_D_x[6] = t55 + t29 * t59;
+        res_D_x[7] = t54 * t59 - t56;
+        res_D_x[8] = t29 * t57 + t54 * t58;
+        res_D_x[9] = t57;
+        res_D_x[10] = t58;
         res_D_x[11] = -t59;
     }
     if (res_D_p != NULL) {
-        res_D_p[0] = t5 * t53 - (t17 * t55 + t26 * t56);
-        res_D_p[1] = t10 * t53 - (t20 * t55 + t27 * t56);
-        res_D_p[2] = t14 * t53 - (t21 * t55 + t28 * t56);
-        res_D_p[3] = t5 * t59 - (t17 * t60 + t26 * t61);
-        res_D_p[4] = t10 * t59 - (t20 * t60 + t27 * t61);
-        res_D_p[5] = t14 * t59 - (t21 * t60 + t28 * t61);
+        res_D_p[0] = t5 * t53 - (t17 * t51 + t26 * t52);
+        res_D_p[1] = t10 * t53 - (t20 * t51 + t27 * t52);
+        res_D_p[2] = t14 * t53 - (t21 * t51 + t28 * t52);
+        res_D_p[3] = t5 * t59 - (t17 * t57 + t26 * t58);
+        res_D_p[4] = t10 * t59 - (t20 * t57 + t27 * t58);
+        res_D_p[5] = t14 * t59 - (t21 * t57 + t28 * t58);
     }
     return 0;
 }

@@ -42,7 +42,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 75 (residual only), 173 (with Jacobians)
+ * Operations: 75 (residual only), 171 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -96,7 +96,7 @@ int liegen_factors_projection_cal3_ds2(
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_p);
 
-/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_factors_projection_cal3_ds2_batch(
     ptrdiff_t n,
     liegen_factors_in x,

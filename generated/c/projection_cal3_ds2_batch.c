@@ -39,35 +39,35 @@ static void block_value(
     const lanes K_p2 = K[8];
     const lanes z_x = z[0];
     const lanes z_y = z[1];
-    const lanes t0 = x_qz * 2.0;
-    const lanes t1 = 2.0 * x_qy;
-    const lanes t2 = x_qx * 2.0;
-    const lanes t3 = x_qx * t2;
-    const lanes t4 = x_qw * t2;
-    const lanes t5 = x_y - p_y;
-    const lanes t6 = t0 * x_qy;
-    const lanes t7 = x_qw * t1;
-    const lanes t8 = x_qx * t0;
-    const lanes t9 = 1.0 - x_qy * t1;
+    const lanes t0 = x_qx * 2.0;
+    const lanes t1 = x_qz * 2.0;
+    const lanes t2 = x_qw * t0;
+    const lanes t3 = t1 * x_qy;
+    const lanes t4 = 2.0 * x_qy;
+    const lanes t5 = x_qw * t4;
+    const lanes t6 = x_qx * t1;
+    const lanes t7 = x_qx * t0;
+    const lanes t8 = 1.0 - x_qy * t4;
+    const lanes t9 = x_y - p_y;
     const lanes t10 = x_x - p_x;
     const lanes t11 = x_z - p_z;
-    const lanes t12 = t11 * (t9 - t3) + (t10 * (t8 + t7) + t5 * (t6 - t4));
-    const lanes t13 = t0 * x_qw;
-    const lanes t14 = x_qx * t1;
-    const lanes t15 = x_qz * t0;
-    const lanes t16 = t10 * (t14 - t13) + t5 * (1.0 - t15 - t3);
-    const lanes t17 = t11 * (t8 - t7) + (t10 * (t9 - t15) + t5 * (t14 + t13));
-    const lanes t18 = (t11 * (t6 + t4) + t16) / t12;
+    const lanes t12 = t11 * (t8 - t7) + (t10 * (t6 + t5) + t9 * (t3 - t2));
+    const lanes t13 = t1 * x_qw;
+    const lanes t14 = x_qx * t4;
+    const lanes t15 = x_qz * t1;
+    const lanes t16 = t11 * (t3 + t2) + t10 * (t14 - t13);
+    const lanes t17 = t10 * (t8 - t15) + (t11 * (t6 - t5) + t9 * (t14 + t13));
+    const lanes t18 = (t9 * (1.0 - t7 - t15) + t16) / t12;
     const lanes t19 = t17 / t12;
     const lanes t20 = t18 * t18;
     const lanes t21 = t19 * t19;
     const lanes t22 = t21 + t20;
-    const lanes t23 = 1.0 + t22 * (K_k1 + t22 * K_k2);
-    const lanes t24 = 2.0 * (t19 * t18);
-    const lanes t25 = K_p1 * (t22 + 2.0 * t20) + (t18 * t23 + t24 * K_p2);
-    const lanes t26 = K_fx * (K_p2 * (t22 + 2.0 * t21) + (t19 * t23 + K_p1 * t24));
+    const lanes t23 = t18 * (2.0 * t19);
+    const lanes t24 = 1.0 + t22 * (K_k1 + t22 * K_k2);
+    const lanes t25 = t18 * t24 + (t23 * K_p2 + K_p1 * (t22 + 2.0 * t20));
+    const lanes t26 = K_fx * (t19 * t24 + (t23 * K_p1 + K_p2 * (t22 + 2.0 * t21)));
     held[0] = t12 < 0.0;
-    res[0] = K_s * t25 + (t26 + (K_u0 - z_x));
+    res[0] = t26 + (K_u0 - z_x + K_s * t25);
     res[1] = t25 * K_fy + (K_v0 - z_y);
 }
 
@@ -80,6 +80,8 @@ static void block_jacobians(
     lanes *res,
     lanes *res_D_x,
     lanes *res_D_p,
+    int want_res_D_x,
+    int want_res_D_p,
     lanes_mask *held)
 {
     const lanes x_qx = x[0];
@@ -154,38 +156,40 @@ static void block_jacobians(
     const lanes t48 = K_p2 * (t46 + t24 * 4.0) + (t30 * t36 + (t35 + t24 * t47));
     const lanes t49 = t30 * (t39 + t47) + K_p1 * t46;
     const lanes t50 = K_fx * t48 + K_s * t49;
-    const lanes t51 = t23 * t24;
-    const lanes t52 = t23 * t30;
-    const lanes t53 = t50 * t51 + t45 * t52;
-    const lanes t54 = -t22;
-    const lanes t55 = t23 * t50;
-    const lanes t56 = t23 * t45;
-    const lanes t57 = K_fy * t44;
-    const lanes t58 = K_fy * t49;
-    const lanes t59 = t51 * t58 + t52 * t57;
-    const lanes t60 = t23 * t58;
-    const lanes t61 = t23 * t57;
+    const lanes t51 = t23 * t50;
+    const lanes t52 = t23 * t45;
+    const lanes t53 = t24 * t51 + t30 * t52;
+    const lanes t55 = K_fy * t44;
+    const lanes t56 = K_fy * t49;
+    const lanes t57 = t23 * t56;
+    const lanes t58 = t23 * t55;
+    const lanes t59 = t24 * t57 + t30 * t58;
     held[0] = t15 < 0.0;
     res[0] = K_s * t40 + (t38 + (K_u0 - z_x));
     res[1] = t40 * K_fy + (K_v0 - z_y);
-    res_D_x[0] = t45 + t29 * t53;
-    res_D_x[1] = t53 * t54 - t50;
-    res_D_x[2] = t29 * t55 + t54 * t56;
-    res_D_x[3] = t55;
-    res_D_x[4] = t56;
-    res_D_x[5] = -t53;
-    res_D_x[6] = t57 + t29 * t59;
-    res_D_x[7] = t54 * t59 - t58;
-    res_D_x[8] = t29 * t60 + t54 * t61;
-    res_D_x[9] = t60;
-    res_D_x[10] = t61;
-    res_D_x[11] = -t59;
-    res_D_p[0] = t5 * t53 - (t17 * t55 + t26 * t56);
-    res_D_p[1] = t10 * t53 - (t20 * t55 + t27 * t56);
-    res_D_p[2] = t14 * t53 - (t21 * t55 + t28 * t56);
-    res_D_p[3] = t5 * t59 - (t17 * t60 + t26 * t61);
-    res_D_p[4] = t10 * t59 - (t20 * t60 + t27 * t61);
-    res_D_p[5] = t14 * t59 - (t21 * t60 + t28 * t61);
+    if (want_res_D_x) {
+        const lanes t54 = -t22;
+        res_D_x[0] = t45 + t29 * t53;
+        res_D_x[1] = t53 * t54 - t50;
+        res_D_x[2] = t29 * t51 + t52 * t54;
+        res_D_x[3] = t51;
+        res_D_x[4] = t52;
+        res_D_x[5] = -t53;
+        res_D_x[6] = t55 + t29 * t59;
+        res_D_x[7] = t54 * t59 - t56;
+        res_D_x[8] = t29 * t57 + t54 * t58;
+        res_D_x[9] = t57;
+        res_D_x[10] = t58;
+        res_D_x[11] = -t59;
+    }
+    if (want_res_D_p) {
+        res_D_p[0] = t5 * t53 - (t17 * t51 + t26 * t52);
+        res_D_p[1] = t10 * t53 - (t20 * t51 + t27 * t52);
+        res_D_p[2] = t14 * t53 - (t21 * t51 + t28 * t52);
+        res_D_p[3] = t5 * t59 - (t17 * t57 + t26 * t58);
+        res_D_p[4] = t10 * t59 - (t20 * t57 + t27 * t58);
+        res_D_p[5] = t14 * t59 - (t21 * t57 + t28 * t58);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -209,7 +213,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_p, 6, n, k);
 }
 
-int liegen_factors_projection_cal3_ds2_batch(
+LANES_WHOLE int liegen_factors_projection_cal3_ds2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in p,
@@ -220,7 +224,9 @@ int liegen_factors_projection_cal3_ds2_batch(
     liegen_factors_out res_D_p,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_p.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_p = res_D_p.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_p;
     const int stream = lanes_streams(n, jacobians ? 20 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -249,7 +255,7 @@ int liegen_factors_projection_cal3_ds2_batch(
             liegen_factors_load(z, 2, k, count, z_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_p_lanes,
-                    held);
+                    want_res_D_x, want_res_D_p, held);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, held);
@@ -258,16 +264,12 @@ int liegen_factors_projection_cal3_ds2_batch(
             violated |= broken;
             if (broken) {
                 lanes_blank(res_lanes, 2, held, 1);
-            }
-            if (broken && jacobians) {
-                lanes_blank(res_D_x_lanes, 12, held, 1);
-                lanes_blank(res_D_p_lanes, 6, held, 1);
+                if (want_res_D_x) lanes_blank(res_D_x_lanes, 12, held, 1);
+                if (want_res_D_p) lanes_blank(res_D_p_lanes, 6, held, 1);
             }
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_p) liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

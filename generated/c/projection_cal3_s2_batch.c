@@ -35,28 +35,28 @@ static void block_value(
     const lanes K_v0 = K[4];
     const lanes z_x = z[0];
     const lanes z_y = z[1];
-    const lanes t0 = x_qx * 2.0;
-    const lanes t1 = x_qz * 2.0;
-    const lanes t2 = x_qw * t0;
-    const lanes t3 = t1 * x_qy;
-    const lanes t4 = x_y - p_y;
-    const lanes t5 = 2.0 * x_qy;
-    const lanes t6 = x_qw * t5;
-    const lanes t7 = x_qx * t1;
-    const lanes t8 = x_x - p_x;
-    const lanes t9 = x_qx * t0;
-    const lanes t10 = 1.0 - x_qy * t5;
+    const lanes t0 = x_qz * 2.0;
+    const lanes t1 = x_qx * t0;
+    const lanes t2 = 2.0 * x_qy;
+    const lanes t3 = x_qw * t2;
+    const lanes t4 = x_x - p_x;
+    const lanes t5 = t0 * x_qy;
+    const lanes t6 = x_qx * 2.0;
+    const lanes t7 = x_qw * t6;
+    const lanes t8 = x_y - p_y;
+    const lanes t9 = 1.0 - x_qy * t2;
+    const lanes t10 = x_qx * t6;
     const lanes t11 = x_z - p_z;
-    const lanes t12 = t11 * (t10 - t9) + (t8 * (t7 + t6) + t4 * (t3 - t2));
-    const lanes t13 = x_qz * t1;
-    const lanes t14 = t1 * x_qw;
-    const lanes t15 = x_qx * t5;
-    const lanes t16 = t8 * (t15 - t14) + t4 * (1.0 - t13 - t9);
-    const lanes t17 = (t11 * (t3 + t2) + t16) / t12;
-    const lanes t18 = t11 * (t7 - t6) + (t8 * (t10 - t13) + t4 * (t15 + t14));
+    const lanes t12 = t11 * (t9 - t10) + (t4 * (t1 + t3) + t8 * (t5 - t7));
+    const lanes t13 = x_qx * t2;
+    const lanes t14 = t0 * x_qw;
+    const lanes t15 = x_qz * t0;
+    const lanes t16 = t4 * (t9 - t15) + (t11 * (t1 - t3) + t8 * (t13 + t14));
+    const lanes t17 = t11 * (t5 + t7) + t4 * (t13 - t14);
+    const lanes t18 = (t8 * (1.0 - t10 - t15) + t17) / t12;
     held[0] = t12 < 0.0;
-    res[0] = K_s * t17 + (K_fx * (t18 / t12) + (K_u0 - z_x));
-    res[1] = t17 * K_fy + (K_v0 - z_y);
+    res[0] = K_fx * (t16 / t12) + (K_u0 - z_x + K_s * t18);
+    res[1] = t18 * K_fy + (K_v0 - z_y);
 }
 
 /* Value and Jacobians of a block. */
@@ -68,6 +68,8 @@ static void block_jacobians(
     lanes *res,
     lanes *res_D_x,
     lanes *res_D_p,
+    int want_res_D_x,
+    int want_res_D_p,
     lanes_mask *held)
 {
     const lanes x_qx = x[0];
@@ -87,64 +89,67 @@ static void block_jacobians(
     const lanes K_v0 = K[4];
     const lanes z_x = z[0];
     const lanes z_y = z[1];
-    const lanes t0 = 2.0 * x_qz;
-    const lanes t1 = x_qy * t0;
-    const lanes t2 = 2.0 * x_qx;
-    const lanes t3 = t2 * x_qw;
-    const lanes t4 = t1 - t3;
-    const lanes t5 = x_y - p_y;
-    const lanes t6 = x_qx * t2;
-    const lanes t7 = x_qy * 2.0;
-    const lanes t8 = 1.0 - x_qy * t7;
-    const lanes t9 = t6 - t8;
-    const lanes t10 = x_z - p_z;
-    const lanes t11 = t0 * x_qx;
-    const lanes t12 = x_qw * t7;
-    const lanes t13 = t11 + t12;
-    const lanes t14 = x_x - p_x;
-    const lanes t15 = t14 * t13 + (t5 * t4 - t10 * t9);
-    const lanes t16 = 1.0 / t15;
-    const lanes t17 = x_qx * t7;
-    const lanes t18 = t0 * x_qw;
-    const lanes t19 = t17 + t18;
-    const lanes t20 = t12 - t11;
-    const lanes t21 = x_qz * t0;
-    const lanes t22 = t21 - t8;
-    const lanes t23 = t5 * t19 - t10 * t20 - t14 * t22;
-    const lanes t24 = t16 * t23;
-    const lanes t25 = t6 + (t21 - 1.0);
-    const lanes t26 = t1 + t3;
-    const lanes t27 = t18 - t17;
-    const lanes t28 = t14 * t27 + (t5 * t25 - t10 * t26);
-    const lanes t29 = t16 * t28;
-    const lanes t30 = t16 * t29;
-    const lanes t31 = t16 * K_fx;
-    const lanes t32 = K_s * t30 - t24 * t31;
-    const lanes t33 = K_s * t16;
-    const lanes t34 = -t23;
-    const lanes t35 = K_fy * t30;
-    const lanes t36 = t16 * K_fy;
+    const lanes t0 = x_x - p_x;
+    const lanes t1 = x_qz * 2.0;
+    const lanes t2 = x_qx * t1;
+    const lanes t3 = 2.0 * x_qy;
+    const lanes t4 = x_qw * t3;
+    const lanes t5 = t2 + t4;
+    const lanes t6 = x_y - p_y;
+    const lanes t7 = t1 * x_qy;
+    const lanes t8 = x_qx * 2.0;
+    const lanes t9 = x_qw * t8;
+    const lanes t10 = t7 - t9;
+    const lanes t11 = x_z - p_z;
+    const lanes t12 = 1.0 - x_qy * t3;
+    const lanes t13 = x_qx * t8;
+    const lanes t14 = t12 - t13;
+    const lanes t15 = t11 * t14 + (t0 * t5 + t6 * t10);
+    const lanes t16 = x_qz * t1;
+    const lanes t17 = t12 - t16;
+    const lanes t18 = x_qx * t3;
+    const lanes t19 = t1 * x_qw;
+    const lanes t20 = t18 + t19;
+    const lanes t21 = t2 - t4;
+    const lanes t22 = t11 * t21 + (t0 * t17 + t6 * t20);
+    const lanes t23 = 1.0 / t15;
+    const lanes t24 = t22 * t23;
+    const lanes t25 = t18 - t19;
+    const lanes t26 = 1.0 - t16 - t13;
+    const lanes t27 = t7 + t9;
+    const lanes t28 = t11 * t27 + (t0 * t25 + t6 * t26);
+    const lanes t29 = t23 * t28;
+    const lanes t30 = K_fx * t23;
+    const lanes t31 = t23 * K_s;
+    const lanes t32 = t24 * t30 + t29 * t31;
+    const lanes t34 = t23 * K_fy;
+    const lanes t35 = t29 * t34;
     held[0] = t15 < 0.0;
-    res[0] = K_fx * t24 + (K_u0 - z_x - K_s * t29);
-    res[1] = K_v0 - z_y - t29 * K_fy;
-    res_D_x[0] = K_s + t28 * t32;
-    res_D_x[1] = t23 * t32 - K_fx;
-    res_D_x[2] = t33 * t34 - t28 * t31;
-    res_D_x[3] = t31;
-    res_D_x[4] = t33;
-    res_D_x[5] = t32;
-    res_D_x[6] = K_fy + t28 * t35;
-    res_D_x[7] = t23 * t35;
-    res_D_x[8] = t34 * t36;
-    res_D_x[9] = lanes_of(0.0);
-    res_D_x[10] = t36;
-    res_D_x[11] = t35;
-    res_D_p[0] = t22 * t31 + (t27 * t33 - t13 * t32);
-    res_D_p[1] = t25 * t33 - t4 * t32 - t19 * t31;
-    res_D_p[2] = t20 * t31 + (t9 * t32 - t26 * t33);
-    res_D_p[3] = t27 * t36 - t13 * t35;
-    res_D_p[4] = t25 * t36 - t4 * t35;
-    res_D_p[5] = t9 * t35 - t26 * t36;
+    res[0] = K_s * t29 + (K_fx * t24 + (K_u0 - z_x));
+    res[1] = t29 * K_fy + (K_v0 - z_y);
+    if (want_res_D_x) {
+        const lanes t33 = -t22;
+        res_D_x[0] = K_s + t28 * t32;
+        res_D_x[1] = t32 * t33 - K_fx;
+        res_D_x[2] = t28 * t30 + t31 * t33;
+        res_D_x[3] = t30;
+        res_D_x[4] = t31;
+        res_D_x[5] = -t32;
+        res_D_x[6] = K_fy + t28 * t35;
+        res_D_x[7] = t33 * t35;
+        res_D_x[8] = t33 * t34;
+        res_D_x[9] = lanes_of(0.0);
+        res_D_x[10] = t34;
+        res_D_x[11] = -t35;
+    }
+    if (want_res_D_p) {
+        res_D_p[0] = t5 * t32 - (t17 * t30 + t25 * t31);
+        res_D_p[1] = t10 * t32 - (t20 * t30 + t26 * t31);
+        res_D_p[2] = t14 * t32 - (t21 * t30 + t27 * t31);
+        res_D_p[3] = t5 * t35 - t25 * t34;
+        res_D_p[4] = t10 * t35 - t26 * t34;
+        res_D_p[5] = t14 * t35 - t27 * t34;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -168,7 +173,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_p, 6, n, k);
 }
 
-int liegen_factors_projection_cal3_s2_batch(
+LANES_WHOLE int liegen_factors_projection_cal3_s2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in p,
@@ -179,7 +184,9 @@ int liegen_factors_projection_cal3_s2_batch(
     liegen_factors_out res_D_p,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_p.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_p = res_D_p.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_p;
     const int stream = lanes_streams(n, jacobians ? 20 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -208,7 +215,7 @@ int liegen_factors_projection_cal3_s2_batch(
             liegen_factors_load(z, 2, k, count, z_lanes);
             if (jacobians) {
                 block_jacobians(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_p_lanes,
-                    held);
+                    want_res_D_x, want_res_D_p, held);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, K_lanes, z_lanes, res_lanes, held);
@@ -217,16 +224,12 @@ int liegen_factors_projection_cal3_s2_batch(
             violated |= broken;
             if (broken) {
                 lanes_blank(res_lanes, 2, held, 1);
-            }
-            if (broken && jacobians) {
-                lanes_blank(res_D_x_lanes, 12, held, 1);
-                lanes_blank(res_D_p_lanes, 6, held, 1);
+                if (want_res_D_x) lanes_blank(res_D_x_lanes, 12, held, 1);
+                if (want_res_D_p) lanes_blank(res_D_p_lanes, 6, held, 1);
             }
             liegen_factors_store(res, 2, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 12, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_p) liegen_factors_store(res_D_p, 6, k, count, res_D_p_lanes, room, stream ? &res_D_p_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

@@ -42,7 +42,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_x = x[0];
     const lanes x_y = x[1];
@@ -65,10 +67,14 @@ static void block_jacobians(
     const lanes t13 = t7 / t12;
     const lanes t14 = t8 / t12;
     res[0] = t11 - z_0;
-    res_D_x[0] = -t13;
-    res_D_x[1] = -t14;
-    res_D_y[0] = t13;
-    res_D_y[1] = t14;
+    if (want_res_D_x) {
+        res_D_x[0] = -t13;
+        res_D_x[1] = -t14;
+    }
+    if (want_res_D_y) {
+        res_D_y[0] = t13;
+        res_D_y[1] = t14;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -90,7 +96,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 2, n, k);
 }
 
-int liegen_factors_range_r2_batch(
+LANES_WHOLE int liegen_factors_range_r2_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -100,7 +106,9 @@ int liegen_factors_range_r2_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 5 : 1);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -125,17 +133,16 @@ int liegen_factors_range_r2_batch(
             liegen_factors_load(y, 2, k, count, y_lanes);
             liegen_factors_load(z, 1, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 1, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 2, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 2, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 2, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 2, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

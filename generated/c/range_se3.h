@@ -80,7 +80,7 @@ int liegen_factors_range_se3(
     double *LIEGEN_FACTORS_RESTRICT res_D_x,
     double *LIEGEN_FACTORS_RESTRICT res_D_y);
 
-/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_factors_range_se3_batch(
     ptrdiff_t n,
     liegen_factors_in x,

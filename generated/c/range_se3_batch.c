@@ -46,7 +46,9 @@ static void block_jacobians(
     const lanes *z,
     lanes *res,
     lanes *res_D_x,
-    lanes *res_D_y)
+    lanes *res_D_y,
+    int want_res_D_x,
+    int want_res_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -79,47 +81,51 @@ static void block_jacobians(
     const lanes t13 = t11 * lanes_select(t4, lanes_of(2.409919865102884e-181), t12);
     const lanes t14 = 1.0 / lanes_select(0.0 < t11, t11, lanes_of(1.0));
     const lanes t15 = t8 * t14;
-    const lanes t16 = x_qy * 2.0;
-    const lanes t17 = 1.0 - x_qy * t16;
-    const lanes t18 = 2.0 * x_qz;
-    const lanes t19 = x_qz * t18;
     const lanes t20 = t9 * t14;
-    const lanes t21 = t16 * x_qx;
-    const lanes t22 = t18 * x_qw;
     const lanes t23 = t10 * t14;
-    const lanes t24 = t18 * x_qx;
-    const lanes t25 = t16 * x_qw;
-    const lanes t26 = 2.0 * x_qx;
-    const lanes t27 = x_qx * t26;
-    const lanes t28 = t15 * (t21 - t22) + t20 * (1.0 - t19 - t27);
-    const lanes t29 = x_qy * t18;
-    const lanes t30 = x_qw * t26;
-    const lanes t31 = 2.0 * y_qz;
-    const lanes t32 = y_qz * t31;
-    const lanes t33 = 2.0 * y_qy;
-    const lanes t34 = 1.0 - y_qy * t33;
-    const lanes t35 = t33 * y_qx;
-    const lanes t36 = t31 * y_qw;
-    const lanes t37 = t33 * y_qw;
-    const lanes t38 = t31 * y_qx;
-    const lanes t39 = 2.0 * y_qx;
-    const lanes t40 = y_qx * t39;
-    const lanes t41 = t15 * (t36 - t35) + t20 * (t40 + (t32 - 1.0));
-    const lanes t42 = y_qy * t31;
-    const lanes t43 = y_qw * t39;
     res[0] = t13 - z_0;
-    res_D_x[0] = lanes_of(0.0);
-    res_D_x[1] = lanes_of(0.0);
-    res_D_x[2] = lanes_of(0.0);
-    res_D_x[3] = t23 * (t24 - t25) + (t15 * (t17 - t19) + t20 * (t21 + t22));
-    res_D_x[4] = t23 * (t29 + t30) + t28;
-    res_D_x[5] = t23 * (t17 - t27) + (t15 * (t24 + t25) + t20 * (t29 - t30));
-    res_D_y[0] = lanes_of(0.0);
-    res_D_y[1] = lanes_of(0.0);
-    res_D_y[2] = lanes_of(0.0);
-    res_D_y[3] = t23 * (t37 - t38) + (t15 * (t32 - t34) - t20 * (t35 + t36));
-    res_D_y[4] = t41 - t23 * (t42 + t43);
-    res_D_y[5] = t23 * (t40 - t34) + (t20 * (t43 - t42) - t15 * (t38 + t37));
+    if (want_res_D_x) {
+        const lanes t16 = x_qy * 2.0;
+        const lanes t17 = 1.0 - x_qy * t16;
+        const lanes t18 = 2.0 * x_qz;
+        const lanes t19 = x_qz * t18;
+        const lanes t21 = t16 * x_qx;
+        const lanes t22 = t18 * x_qw;
+        const lanes t24 = t18 * x_qx;
+        const lanes t25 = t16 * x_qw;
+        const lanes t26 = 2.0 * x_qx;
+        const lanes t27 = x_qx * t26;
+        const lanes t28 = t15 * (t21 - t22) + t20 * (1.0 - t19 - t27);
+        const lanes t29 = x_qy * t18;
+        const lanes t30 = x_qw * t26;
+        res_D_x[0] = lanes_of(0.0);
+        res_D_x[1] = lanes_of(0.0);
+        res_D_x[2] = lanes_of(0.0);
+        res_D_x[3] = t23 * (t24 - t25) + (t15 * (t17 - t19) + t20 * (t21 + t22));
+        res_D_x[4] = t23 * (t29 + t30) + t28;
+        res_D_x[5] = t23 * (t17 - t27) + (t15 * (t24 + t25) + t20 * (t29 - t30));
+    }
+    if (want_res_D_y) {
+        const lanes t31 = 2.0 * y_qz;
+        const lanes t32 = y_qz * t31;
+        const lanes t33 = 2.0 * y_qy;
+        const lanes t34 = 1.0 - y_qy * t33;
+        const lanes t35 = t33 * y_qx;
+        const lanes t36 = t31 * y_qw;
+        const lanes t37 = t33 * y_qw;
+        const lanes t38 = t31 * y_qx;
+        const lanes t39 = 2.0 * y_qx;
+        const lanes t40 = y_qx * t39;
+        const lanes t41 = t15 * (t36 - t35) + t20 * (t40 + (t32 - 1.0));
+        const lanes t42 = y_qy * t31;
+        const lanes t43 = y_qw * t39;
+        res_D_y[0] = lanes_of(0.0);
+        res_D_y[1] = lanes_of(0.0);
+        res_D_y[2] = lanes_of(0.0);
+        res_D_y[3] = t23 * (t37 - t38) + (t15 * (t32 - t34) - t20 * (t35 + t36));
+        res_D_y[4] = t41 - t23 * (t42 + t43);
+        res_D_y[5] = t23 * (t40 - t34) + (t20 * (t43 - t42) - t15 * (t38 + t37));
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -141,7 +147,7 @@ static LANES_APART void block_ahead(
     liegen_factors_ahead_to(res_D_y, 6, n, k);
 }
 
-int liegen_factors_range_se3_batch(
+LANES_WHOLE int liegen_factors_range_se3_batch(
     ptrdiff_t n,
     liegen_factors_in x,
     liegen_factors_in y,
@@ -151,7 +157,9 @@ int liegen_factors_range_se3_batch(
     liegen_factors_out res_D_y,
     uint8_t *status)
 {
-    const int jacobians = res_D_x.data != NULL || res_D_y.data != NULL;
+    const int want_res_D_x = res_D_x.data != NULL;
+    const int want_res_D_y = res_D_y.data != NULL;
+    const int jacobians = want_res_D_x || want_res_D_y;
     const int stream = lanes_streams(n, jacobians ? 13 : 1);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -176,17 +184,16 @@ int liegen_factors_range_se3_batch(
             liegen_factors_load(y, 7, k, count, y_lanes);
             liegen_factors_load(z, 1, k, count, z_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, z_lanes, res_lanes, res_D_x_lanes, res_D_y_lanes,
+                    want_res_D_x, want_res_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, z_lanes, res_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_factors_store(res, 1, k, count, res_lanes, room, stream ? &res_pen : NULL);
-            if (jacobians) {
-                liegen_factors_store(res_D_x, 6, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
-                liegen_factors_store(res_D_y, 6, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
-            }
+            if (want_res_D_x) liegen_factors_store(res_D_x, 6, k, count, res_D_x_lanes, room, stream ? &res_D_x_pen : NULL);
+            if (want_res_D_y) liegen_factors_store(res_D_y, 6, k, count, res_D_y_lanes, room, stream ? &res_D_y_pen : NULL);
         }
         lanes_lift(&res_pen);
         lanes_lift(&res_D_x_pen);

@@ -44,7 +44,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 58 (residual only), 138 (with Jacobians)
+ * Operations: 58 (residual only), 136 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -84,30 +84,30 @@ int liegen_factors_sfm_cal3_bundler_res(
     const double K_v0 = K[4];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_qz * 2.0;
-    const double t1 = 2.0 * x_qy;
-    const double t2 = x_qx * 2.0;
-    const double t3 = x_qx * t2;
-    const double t4 = x_qw * t2;
-    const double t5 = x_y - p_y;
-    const double t6 = t0 * x_qy;
-    const double t7 = x_qw * t1;
-    const double t8 = x_qx * t0;
-    const double t9 = 1.0 - x_qy * t1;
+    const double t0 = x_qx * 2.0;
+    const double t1 = x_qz * 2.0;
+    const double t2 = x_qw * t0;
+    const double t3 = t1 * x_qy;
+    const double t4 = 2.0 * x_qy;
+    const double t5 = x_qw * t4;
+    const double t6 = x_qx * t1;
+    const double t7 = x_qx * t0;
+    const double t8 = 1.0 - x_qy * t4;
+    const double t9 = x_y - p_y;
     const double t10 = x_x - p_x;
     const double t11 = x_z - p_z;
-    const double t12 = t11 * (t9 - t3) + (t10 * (t8 + t7) + t5 * (t6 - t4));
+    const double t12 = t11 * (t8 - t7) + (t10 * (t6 + t5) + t9 * (t3 - t2));
     const int status = ((t12 < 0.0) ? 0 : 1);
     if (status) {
         liegen_factors_sfm_cal3_bundler_fill(res, 2);
         return status;
     }
-    const double t13 = t0 * x_qw;
-    const double t14 = x_qx * t1;
-    const double t15 = x_qz * t0;
-    const double t16 = t10 * (t14 - t13) + t5 * (1.0 - t15 - t3);
-    const double t17 = t11 * (t8 - t7) + (t10 * (t9 - t15) + t5 * (t14 + t13));
-    const double t18 = (t11 * (t6 + t4) + t16) / t12;
+    const double t13 = t1 * x_qw;
+    const double t14 = x_qx * t4;
+    const double t15 = x_qz * t1;
+    const double t16 = t11 * (t3 + t2) + t10 * (t14 - t13);
+    const double t17 = t10 * (t8 - t15) + (t11 * (t6 - t5) + t9 * (t14 + t13));
+    const double t18 = (t9 * (1.0 - t7 - t15) + t16) / t12;
     const double t19 = t17 / t12;
     const double t20 = t19 * t19 + t18 * t18;
     const double t21 = K_f * (1.0 + t20 * (K_k1 + t20 * K_k2));
@@ -145,20 +145,20 @@ int liegen_factors_sfm_cal3_bundler(
     const double K_v0 = K[4];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_z - p_z;
-    const double t1 = x_qy * 2.0;
-    const double t2 = 1.0 - x_qy * t1;
+    const double t0 = x_y - p_y;
+    const double t1 = 2.0 * x_qz;
+    const double t2 = x_qy * t1;
     const double t3 = 2.0 * x_qx;
-    const double t4 = x_qx * t3;
+    const double t4 = t3 * x_qw;
     const double t5 = t2 - t4;
     const double t6 = x_x - p_x;
-    const double t7 = 2.0 * x_qz;
-    const double t8 = x_qx * t7;
-    const double t9 = t1 * x_qw;
-    const double t10 = t8 + t9;
-    const double t11 = x_y - p_y;
-    const double t12 = x_qy * t7;
-    const double t13 = t3 * x_qw;
+    const double t7 = t1 * x_qx;
+    const double t8 = x_qy * 2.0;
+    const double t9 = x_qw * t8;
+    const double t10 = t7 + t9;
+    const double t11 = x_z - p_z;
+    const double t12 = 1.0 - x_qy * t8;
+    const double t13 = x_qx * t3;
     const double t14 = t12 - t13;
     const double t15 = t11 * t14 + (t0 * t5 + t6 * t10);
     const int status = ((t15 < 0.0) ? 0 : 1);
@@ -169,19 +169,19 @@ int liegen_factors_sfm_cal3_bundler(
         liegen_factors_sfm_cal3_bundler_fill(res_D_K, 6);
         return status;
     }
-    const double t16 = t8 - t9;
-    const double t17 = x_qz * t7;
-    const double t18 = t2 - t17;
-    const double t19 = t1 * x_qx;
-    const double t20 = t7 * x_qw;
-    const double t21 = t19 + t20;
-    const double t22 = t11 * t21 + (t0 * t16 + t6 * t18);
+    const double t16 = x_qx * t8;
+    const double t17 = t1 * x_qw;
+    const double t18 = t16 + t17;
+    const double t19 = t7 - t9;
+    const double t20 = x_qz * t1;
+    const double t21 = t12 - t20;
+    const double t22 = t6 * t21 + (t0 * t18 + t11 * t19);
     const double t23 = 1.0 / t15;
     const double t24 = t22 * t23;
-    const double t25 = t12 + t13;
-    const double t26 = t19 - t20;
-    const double t27 = t17 + (t4 - 1.0);
-    const double t28 = t0 * t25 + t6 * t26 - t11 * t27;
+    const double t25 = t2 + t4;
+    const double t26 = t16 - t17;
+    const double t27 = t13 + (t20 - 1.0);
+    const double t28 = t6 * t26 + (t11 * t25 - t0 * t27);
     const double t29 = t23 * t28;
     const double t30 = t24 * t24 + t29 * t29;
     const double t31 = t30 * K_k2;
@@ -195,50 +195,48 @@ int liegen_factors_sfm_cal3_bundler(
     const double t39 = t36 * t38;
     const double t40 = t24 * t37;
     const double t41 = K_f * (t33 + t24 * t40);
-    const double t42 = t23 * t24;
-    const double t43 = t23 * t29;
-    const double t44 = t41 * t42 + t39 * t43;
+    const double t42 = t23 * t41;
+    const double t43 = t23 * t39;
+    const double t44 = t24 * t42 + t29 * t43;
     const double t45 = -t22;
-    const double t46 = t23 * t41;
-    const double t47 = t23 * t39;
-    const double t48 = K_f * (t33 + t29 * t38);
-    const double t49 = K_f * t29;
-    const double t50 = t40 * t49;
-    const double t51 = t42 * t50 + t43 * t48;
-    const double t52 = t23 * t50;
-    const double t53 = t23 * t48;
-    const double t54 = t30 * t30;
+    const double t46 = K_f * (t33 + t29 * t38);
+    const double t47 = K_f * t29;
+    const double t48 = t40 * t47;
+    const double t49 = t23 * t48;
+    const double t50 = t23 * t46;
+    const double t51 = t24 * t49 + t29 * t50;
+    const double t52 = t30 * t30;
     res[0] = K_f * t34 + (K_u0 - z_x);
     res[1] = K_f * t35 + (K_v0 - z_y);
     if (res_D_x != NULL) {
         res_D_x[0] = t39 + t28 * t44;
         res_D_x[1] = t44 * t45 - t41;
-        res_D_x[2] = t28 * t46 + t45 * t47;
-        res_D_x[3] = t46;
-        res_D_x[4] = t47;
+        res_D_x[2] = t28 * t42 + t43 * t45;
+        res_D_x[3] = t42;
+        res_D_x[4] = t43;
         res_D_x[5] = -t44;
-        res_D_x[6] = t48 + t28 * t51;
-        res_D_x[7] = t45 * t51 - t50;
-        res_D_x[8] = t28 * t52 + t45 * t53;
-        res_D_x[9] = t52;
-        res_D_x[10] = t53;
+        res_D_x[6] = t46 + t28 * t51;
+        res_D_x[7] = t45 * t51 - t48;
+        res_D_x[8] = t28 * t49 + t45 * t50;
+        res_D_x[9] = t49;
+        res_D_x[10] = t50;
         res_D_x[11] = -t51;
     }
     if (res_D_p != NULL) {
-        res_D_p[0] = t10 * t44 - t18 * t46 - t26 * t47;
-        res_D_p[1] = t27 * t47 + (t14 * t44 - t21 * t46);
-        res_D_p[2] = t5 * t44 - t16 * t46 - t25 * t47;
-        res_D_p[3] = t10 * t51 - t18 * t52 - t26 * t53;
-        res_D_p[4] = t27 * t53 + (t14 * t51 - t21 * t52);
-        res_D_p[5] = t5 * t51 - t16 * t52 - t25 * t53;
+        res_D_p[0] = t10 * t44 - (t26 * t43 + t21 * t42);
+        res_D_p[1] = t5 * t44 + (t27 * t43 - t18 * t42);
+        res_D_p[2] = t14 * t44 - (t25 * t43 + t19 * t42);
+        res_D_p[3] = t10 * t51 - (t21 * t49 + t26 * t50);
+        res_D_p[4] = t5 * t51 + (t27 * t50 - t18 * t49);
+        res_D_p[5] = t14 * t51 - (t19 * t49 + t25 * t50);
     }
     if (res_D_K != NULL) {
         res_D_K[0] = t34;
         res_D_K[1] = t30 * t36;
-        res_D_K[2] = t36 * t54;
+        res_D_K[2] = t36 * t52;
         res_D_K[3] = t35;
-        res_D_K[4] = t30 * t49;
-        res_D_K[5] = t49 * t54;
+        res_D_K[4] = t30 * t47;
+        res_D_K[5] = t47 * t52;
     }
     return 0;
 }

@@ -99,7 +99,7 @@ int liegen_factors_sfm_cal3_s2(
     double *LIEGEN_FACTORS_RESTRICT res_D_p,
     double *LIEGEN_FACTORS_RESTRICT res_D_K);
 
-/* n factors; see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_factors_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_factors_sfm_cal3_s2_batch(
     ptrdiff_t n,
     liegen_factors_in x,

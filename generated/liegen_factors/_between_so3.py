@@ -26,7 +26,7 @@
 #   res_D_x: 3 x 3, derivative of res by the tangent of x
 #   res_D_y: 3 x 3, derivative of res by the tangent of y
 #
-# Operations: 89 (residual only), 184 (with Jacobians)
+# Operations: 89 (residual only), 182 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -128,14 +128,14 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     x_qx, x_qy, x_qz, x_qw = x
     y_qx, y_qy, y_qz, y_qw = y
     z_qx, z_qy, z_qz, z_qw = z
-    t0 = x_qz * y_qz + (x_qy * y_qy + (x_qw * y_qw + x_qx * y_qx))
+    t0 = x_qx * y_qx + (x_qw * y_qw + (x_qz * y_qz + x_qy * y_qy))
     t1 = z_qw * t0
-    t2 = y_qy * x_qz + (x_qw * y_qx - y_qw * x_qx - x_qy * y_qz)
+    t2 = x_qw * y_qx + (x_qz * y_qy - y_qz * x_qy) - y_qw * x_qx
     t3 = z_qx * t2
     t4 = t1 + t3
-    t5 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz
+    t5 = y_qz * x_qx + (y_qy * x_qw - (x_qz * y_qx + x_qy * y_qw))
     t6 = z_qy * t5
-    t7 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz
+    t7 = y_qz * x_qw + (x_qy * y_qx - x_qz * y_qw) - y_qy * x_qx
     t8 = z_qz * t7
     t9 = t6 + t8
     t10 = t4 + t9
@@ -158,24 +158,24 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t27 = t20 * (t26 - t23)
     t28 = z_qw * t5
     t29 = t0 * z_qy
-    t30 = t28 - t29
+    t30 = t29 - t28
     t31 = z_qx * t7
     t32 = t2 * z_qz
-    t33 = t31 - t32
+    t33 = t32 - t31
     t34 = t20 * (t30 + t33)
     t35 = z_qw * t7
     t36 = t0 * z_qz
-    t37 = t35 - t36
+    t37 = t36 - t35
     t38 = z_qx * t5
     t39 = t2 * z_qy
-    t40 = t38 - t39
-    t41 = t20 * (t40 - t37)
+    t40 = t39 - t38
+    t41 = t20 * (t37 - t40)
     t42 = t20 * 0.5
-    t43 = t41 * t41 + (t27 * t27 + t34 * t34)
-    t44 = t43 * (t43 * (-2.25732705039638e-06) + 0.07465244042649771)
-    t45 = t43 * (t44 - 38.45987747204322) + 3799.5172048139725
+    t43 = t34 * t34 + (t41 * t41 + t27 * t27)
+    t44 = t43 * (t43 * 2.25732705039638e-06 - 0.07465244042649771)
+    t45 = t43 * (t44 + 38.45987747204322) - 3799.5172048139725
     t46 = t43 * (t43 * (t43 - 635.5207748643182) + 92825.69243378133)
-    t47 = t45 * (t43 / (t46 - 2735652.38746603)) - 0.08333333333333333
+    t47 = 0.08333333333333333 + t45 * (t43 / (t46 - 2735652.38746603))
     t48 = t27 * t47
     t49 = t20 * (t23 + t26)
     t50 = t38 + t39
@@ -186,35 +186,35 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t55 = t20 * (t37 + t40)
     t56 = t34 * t47
     t57 = t1 - t3
-    t58 = t6 - t8
+    t58 = t8 - t6
     t59 = t24 + t25
     t60 = t21 + t22
     t61 = t41 * t47
-    t62 = 1.0 + t43 * t47
+    t62 = 1.0 - t43 * t47
     t63 = t34 * t48
-    t64 = t41 * (-0.5)
+    t64 = t41 * 0.5
     t65 = t41 * t48
     t66 = t34 * 0.5
     t67 = t41 * t56
     t68 = t27 * (-0.5)
     res[0] = t27
-    res[1] = -t34
+    res[1] = t34
     res[2] = t41
-    res_D_x[0, 0] = t42 * (t4 - t9) - t48 * t49
+    res_D_x[0, 0] = t42 * (t4 - t9) + t48 * t49
     res_D_x[0, 1] = t42 * (t50 + t51) - t48 * t52
     res_D_x[0, 2] = t42 * (t53 - t54) - t48 * t55
     res_D_x[1, 0] = t42 * (t50 - t51) + t49 * t56
-    res_D_x[1, 1] = t42 * (t57 + t58) + t52 * t56
-    res_D_x[1, 2] = t42 * (t59 + t60) + t55 * t56
-    res_D_x[2, 0] = t42 * (t53 + t54) - t49 * t61
+    res_D_x[1, 1] = t42 * (t57 - t58) - t52 * t56
+    res_D_x[1, 2] = t42 * (t59 + t60) - t55 * t56
+    res_D_x[2, 0] = t42 * (t53 + t54) + t49 * t61
     res_D_x[2, 1] = t42 * (t59 - t60) - t52 * t61
-    res_D_x[2, 2] = t42 * (t57 - t58) - t55 * t61
-    res_D_y[0, 0] = t62 - t27 * t48
-    res_D_y[0, 1] = t63 + t64
-    res_D_y[0, 2] = -(t65 + t66)
-    res_D_y[1, 0] = t63 - t64
-    res_D_y[1, 1] = t62 - t34 * t56
+    res_D_x[2, 2] = t42 * (t57 + t58) - t55 * t61
+    res_D_y[0, 0] = t62 + t27 * t48
+    res_D_y[0, 1] = t63 - t64
+    res_D_y[0, 2] = t65 + t66
+    res_D_y[1, 0] = t63 + t64
+    res_D_y[1, 1] = t62 + t34 * t56
     res_D_y[1, 2] = t67 + t68
-    res_D_y[2, 0] = t66 - t65
+    res_D_y[2, 0] = t65 - t66
     res_D_y[2, 1] = t67 - t68
-    res_D_y[2, 2] = t62 - t41 * t61
+    res_D_y[2, 2] = t62 + t41 * t61

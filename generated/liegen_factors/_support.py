@@ -57,20 +57,20 @@
 # Operations:
 #   bearing_se2: 30, with Jacobians 51
 #   bearing_se2_r2: 30, with Jacobians 45
-#   bearing_se3: 140, with Jacobians 381
+#   bearing_se3: 140, with Jacobians 379
 #   bearing_se3_gtsam: 139, with Jacobians 319
 #   bearing_se3_r3: 140, with Jacobians 328
-#   bearing_se3_r3_gtsam: 139, with Jacobians 269
+#   bearing_se3_r3_gtsam: 139, with Jacobians 267
 #   between_r2: 4, with Jacobians 4
 #   between_r3: 6, with Jacobians 6
 #   between_se2: 53, with Jacobians 70
 #   between_se3: 211, with Jacobians 412
 #   between_so2: 13, with Jacobians 13
-#   between_so3: 89, with Jacobians 184
-#   projection_cal3_bundler: 58, with Jacobians 131
-#   projection_cal3_ds2: 75, with Jacobians 173
-#   projection_cal3_s2: 52, with Jacobians 97
-#   sfm_cal3_bundler: 58, with Jacobians 138
+#   between_so3: 89, with Jacobians 182
+#   projection_cal3_bundler: 58, with Jacobians 129
+#   projection_cal3_ds2: 75, with Jacobians 171
+#   projection_cal3_s2: 52, with Jacobians 98
+#   sfm_cal3_bundler: 58, with Jacobians 136
 #   sfm_cal3_s2: 52, with Jacobians 98
 #   prior_r2: 2, with Jacobians 2
 #   prior_r3: 3, with Jacobians 3

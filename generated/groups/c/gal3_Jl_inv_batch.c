@@ -50,41 +50,41 @@ static void block_value(
     const lanes t24 = 2.0 * t23 + t1 * t22;
     const lanes t25 = d_v2 * t20;
     const lanes t26 = t25 * 2.0;
-    const lanes t27 = d_v1 * t22;
-    const lanes t28 = d_v1 * t20;
-    const lanes t29 = t28 * 2.0;
+    const lanes t27 = d_v1 * t20;
+    const lanes t28 = t27 * 2.0;
+    const lanes t29 = d_v1 * t22;
     const lanes t30 = d_v0 * t20;
     const lanes t31 = t30 * 2.0;
     const lanes t32 = d_v0 * t22;
-    const lanes t33 = t28 * d_v6 + (d_v1 * t32 + t30 * d_v7);
+    const lanes t33 = d_v1 * t32 + (t30 * d_v7 + t27 * d_v6);
     const lanes t34 = d_v0 * d_v7 - d_v1 * d_v6;
     const lanes t35 = 0.5 * d_v8;
     const lanes t36 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
-    const lanes t37 = t19 * t34;
-    const lanes t38 = t36 * t19;
-    const lanes t39 = 2.0 * (t20 * t36) + t1 * t38;
+    const lanes t37 = t36 * t19;
+    const lanes t38 = 2.0 * (t20 * t36) + t1 * t37;
+    const lanes t39 = t19 * t34;
     const lanes t40 = t23 * (t20 + t1 * t19);
-    const lanes t41 = d_v1 * t38;
-    const lanes t42 = t20 * d_v6 + d_v0 * t40;
-    const lanes t43 = t25 * d_v4 + (d_v2 * t41 + t28 * d_v5);
+    const lanes t41 = t20 * d_v6 + d_v0 * t40;
+    const lanes t42 = d_v1 * t37;
+    const lanes t43 = d_v2 * t42 + (t27 * d_v5 + t25 * d_v4);
     const lanes t44 = 0.5 * d_v3;
-    const lanes t45 = d_v0 * t38;
-    const lanes t46 = t20 * d_v7 + d_v1 * t40;
-    const lanes t47 = t25 * d_v3 + (d_v2 * t45 + t30 * d_v5);
+    const lanes t45 = t20 * d_v7 + d_v1 * t40;
+    const lanes t46 = d_v0 * t37;
+    const lanes t47 = d_v2 * t46 + (t30 * d_v5 + t25 * d_v3);
     const lanes t48 = 0.5 * d_v4;
-    const lanes t49 = t25 * d_v6 + (d_v2 * t32 + t30 * d_v8);
+    const lanes t49 = d_v2 * t32 + (t30 * d_v8 + t25 * d_v6);
     const lanes t50 = d_v2 * d_v6 - d_v0 * d_v8;
     const lanes t51 = 0.5 * d_v7;
     const lanes t52 = t19 * t50;
     const lanes t53 = t20 * d_v8 + d_v2 * t40;
-    const lanes t54 = t28 * d_v3 + (d_v1 * t45 + t30 * d_v4);
+    const lanes t54 = d_v1 * t46 + (t30 * d_v4 + t27 * d_v3);
     const lanes t55 = 0.5 * d_v5;
-    const lanes t56 = t25 * d_v7 + (d_v2 * t27 + t28 * d_v8);
+    const lanes t56 = d_v2 * t29 + (t27 * d_v8 + t25 * d_v7);
     const lanes t57 = d_v1 * d_v8 - d_v2 * d_v7;
     const lanes t58 = 0.5 * d_v6;
     const lanes t59 = t19 * t57;
     const lanes t60 = d_v0 * 0.5;
-    const lanes t61 = d_v2 * t28;
+    const lanes t61 = d_v2 * t27;
     const lanes t62 = t61 - t60;
     const lanes t63 = t61 + t60;
     const lanes t64 = d_v1 * 0.5;
@@ -98,7 +98,7 @@ static void block_value(
     const lanes t72 = t1 * t20;
     const lanes t73 = 1.0 - t72;
     const lanes t74 = t73 + d_v2 * t25;
-    const lanes t75 = t73 + d_v1 * t28;
+    const lanes t75 = t73 + d_v1 * t27;
     const lanes t76 = t73 + d_v0 * t30;
     const lanes t77 = d_v9 * (t20 * t72 + (0.25 - t20));
     const lanes t78 = d_v0 * t77;
@@ -135,9 +135,9 @@ static void block_value(
     out[27] = lanes_of(0.0);
     out[28] = lanes_of(0.0);
     out[29] = lanes_of(0.0);
-    out[30] = d_v0 * (t45 + d_v9 * t59) + (d_v3 * t31 - t39);
-    out[31] = d_v9 * (t53 + d_v1 * t59) + (t54 + t55);
-    out[32] = d_v9 * (d_v2 * t59 - t46) + (t47 - t48);
+    out[30] = d_v0 * (t46 + d_v9 * t59) + (d_v3 * t31 - t38);
+    out[31] = d_v9 * (t53 + d_v1 * t59) + (t55 + t54);
+    out[32] = d_v9 * (d_v2 * t59 - t45) + (t47 - t48);
     out[33] = t76;
     out[34] = t71;
     out[35] = t67;
@@ -146,8 +146,8 @@ static void block_value(
     out[38] = -t80;
     out[39] = t20 * t57 - t58;
     out[40] = d_v9 * (d_v0 * t52 - t53) + (t54 - t55);
-    out[41] = d_v4 * t29 + (d_v1 * (t41 + d_v9 * t52) - t39);
-    out[42] = d_v9 * (t42 + d_v2 * t52) + (t43 + t44);
+    out[41] = d_v1 * (t42 + d_v9 * t52) + (d_v4 * t28 - t38);
+    out[42] = d_v9 * (t41 + d_v2 * t52) + (t44 + t43);
     out[43] = t70;
     out[44] = t75;
     out[45] = t63;
@@ -155,9 +155,9 @@ static void block_value(
     out[47] = t81;
     out[48] = t78;
     out[49] = t20 * t50 - t51;
-    out[50] = d_v9 * (t46 + d_v0 * t37) + (t47 + t48);
-    out[51] = d_v9 * (d_v1 * t37 - t42) + (t43 - t44);
-    out[52] = d_v5 * t26 + (d_v2 * (d_v2 * t38 + d_v9 * t37) - t39);
+    out[50] = d_v9 * (t45 + d_v0 * t39) + (t48 + t47);
+    out[51] = d_v9 * (d_v1 * t39 - t41) + (t43 - t44);
+    out[52] = d_v2 * (d_v2 * t37 + d_v9 * t39) + (d_v5 * t26 - t38);
     out[53] = t66;
     out[54] = t62;
     out[55] = t74;
@@ -176,7 +176,7 @@ static void block_value(
     out[68] = t67;
     out[69] = lanes_of(0.0);
     out[70] = t33 - t35;
-    out[71] = d_v7 * t29 + (d_v1 * t27 - t24);
+    out[71] = d_v1 * t29 + (d_v7 * t28 - t24);
     out[72] = t58 + t56;
     out[73] = lanes_of(0.0);
     out[74] = lanes_of(0.0);
@@ -187,7 +187,7 @@ static void block_value(
     out[79] = lanes_of(0.0);
     out[80] = t51 + t49;
     out[81] = t56 - t58;
-    out[82] = d_v8 * t26 + (t0 * t22 - t24);
+    out[82] = t0 * t22 + (d_v8 * t26 - t24);
     out[83] = lanes_of(0.0);
     out[84] = lanes_of(0.0);
     out[85] = lanes_of(0.0);
@@ -218,7 +218,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 100, n, k);
 }
 
-int liegen_groups_gal3_Jl_inv_batch(
+LANES_WHOLE int liegen_groups_gal3_Jl_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

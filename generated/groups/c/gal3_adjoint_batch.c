@@ -163,7 +163,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 100, n, k);
 }
 
-int liegen_groups_gal3_adjoint_batch(
+LANES_WHOLE int liegen_groups_gal3_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,

@@ -37,27 +37,27 @@ static void block_value(
     const lanes t9 = 1.0 - x_qy * t1;
     const lanes t10 = x_qx * t2;
     const lanes t11 = t10 - t9;
-    const lanes t12 = x_qz * t0;
-    const lanes t13 = t10 + (t12 - 1.0);
-    const lanes t14 = t6 + t5;
-    const lanes t15 = x_qw * t0;
-    const lanes t16 = x_qx * t1;
-    const lanes t17 = t16 - t15;
-    const lanes t18 = t16 + t15;
-    const lanes t19 = t9 - t12;
-    const lanes t20 = t4 - t3;
-    const lanes t21 = x_x - x_vx * x_t;
+    const lanes t12 = t6 + t5;
+    const lanes t13 = x_qx * t1;
+    const lanes t14 = x_qw * t0;
+    const lanes t15 = t13 - t14;
+    const lanes t16 = x_qz * t0;
+    const lanes t17 = t16 + (t10 - 1.0);
+    const lanes t18 = t13 + t14;
+    const lanes t19 = t4 - t3;
+    const lanes t20 = t9 - t16;
+    const lanes t21 = x_x - x_t * x_vx;
     const lanes t22 = x_y - x_t * x_vy;
     const lanes t23 = x_z - x_t * x_vz;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = t20 * t23 - (t19 * t21 + t18 * t22);
-    out[5] = t22 * t13 - t21 * t17 - t23 * t14;
+    out[4] = t19 * t23 - t18 * t22 - t20 * t21;
+    out[5] = t22 * t17 - (t23 * t12 + t21 * t15);
     out[6] = t23 * t11 - (t22 * t8 + t21 * t7);
-    out[7] = t20 * x_vz - (t19 * x_vx + t18 * x_vy);
-    out[8] = x_vy * t13 - x_vx * t17 - x_vz * t14;
+    out[7] = t19 * x_vz - t18 * x_vy - t20 * x_vx;
+    out[8] = x_vy * t17 - (x_vz * t12 + x_vx * t15);
     out[9] = x_vz * t11 - (x_vy * t8 + x_vx * t7);
     out[10] = -x_t;
 }
@@ -66,7 +66,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -116,106 +117,108 @@ static void block_jacobians(
     out[8] = x_vx * t14 + x_vy * t12 + x_vz * t19;
     out[9] = x_vy * t8 + x_vx * t7 + x_vz * t18;
     out[10] = t25;
-    out_D_x[0] = t17;
-    out_D_x[1] = t14;
-    out_D_x[2] = t7;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = t15;
-    out_D_x[11] = t12;
-    out_D_x[12] = t8;
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(0.0);
-    out_D_x[20] = t20;
-    out_D_x[21] = t19;
-    out_D_x[22] = t18;
-    out_D_x[23] = lanes_of(0.0);
-    out_D_x[24] = lanes_of(0.0);
-    out_D_x[25] = lanes_of(0.0);
-    out_D_x[26] = lanes_of(0.0);
-    out_D_x[27] = lanes_of(0.0);
-    out_D_x[28] = lanes_of(0.0);
-    out_D_x[29] = lanes_of(0.0);
-    out_D_x[30] = t15 * t24 - t22 * t20;
-    out_D_x[31] = t24 * t12 - t22 * t19;
-    out_D_x[32] = t24 * t8 - t22 * t18;
-    out_D_x[33] = t17;
-    out_D_x[34] = t14;
-    out_D_x[35] = t7;
-    out_D_x[36] = t17 * t25;
-    out_D_x[37] = t14 * t25;
-    out_D_x[38] = t7 * t25;
-    out_D_x[39] = -x_vx;
-    out_D_x[40] = t21 * t20 - t17 * t24;
-    out_D_x[41] = t21 * t19 - t24 * t14;
-    out_D_x[42] = t21 * t18 - t24 * t7;
-    out_D_x[43] = t15;
-    out_D_x[44] = t12;
-    out_D_x[45] = t8;
-    out_D_x[46] = t15 * t25;
-    out_D_x[47] = t12 * t25;
-    out_D_x[48] = t8 * t25;
-    out_D_x[49] = -x_vy;
-    out_D_x[50] = t17 * t22 + t23 * t15;
-    out_D_x[51] = t22 * t14 + t23 * t12;
-    out_D_x[52] = t22 * t7 + t23 * t8;
-    out_D_x[53] = t20;
-    out_D_x[54] = t19;
-    out_D_x[55] = t18;
-    out_D_x[56] = t20 * t25;
-    out_D_x[57] = t19 * t25;
-    out_D_x[58] = t18 * t25;
-    out_D_x[59] = -x_vz;
-    out_D_x[60] = x_vy * t20 - x_vz * t15;
-    out_D_x[61] = x_vy * t19 - x_vz * t12;
-    out_D_x[62] = x_vy * t18 - x_vz * t8;
-    out_D_x[63] = lanes_of(0.0);
-    out_D_x[64] = lanes_of(0.0);
-    out_D_x[65] = lanes_of(0.0);
-    out_D_x[66] = t17;
-    out_D_x[67] = t14;
-    out_D_x[68] = t7;
-    out_D_x[69] = lanes_of(0.0);
-    out_D_x[70] = x_vz * t17 - x_vx * t20;
-    out_D_x[71] = x_vz * t14 - x_vx * t19;
-    out_D_x[72] = x_vz * t7 - x_vx * t18;
-    out_D_x[73] = lanes_of(0.0);
-    out_D_x[74] = lanes_of(0.0);
-    out_D_x[75] = lanes_of(0.0);
-    out_D_x[76] = t15;
-    out_D_x[77] = t12;
-    out_D_x[78] = t8;
-    out_D_x[79] = lanes_of(0.0);
-    out_D_x[80] = x_vx * t15 - x_vy * t17;
-    out_D_x[81] = x_vx * t12 - x_vy * t14;
-    out_D_x[82] = x_vx * t8 - x_vy * t7;
-    out_D_x[83] = lanes_of(0.0);
-    out_D_x[84] = lanes_of(0.0);
-    out_D_x[85] = lanes_of(0.0);
-    out_D_x[86] = t20;
-    out_D_x[87] = t19;
-    out_D_x[88] = t18;
-    out_D_x[89] = lanes_of(0.0);
-    out_D_x[90] = lanes_of(0.0);
-    out_D_x[91] = lanes_of(0.0);
-    out_D_x[92] = lanes_of(0.0);
-    out_D_x[93] = lanes_of(0.0);
-    out_D_x[94] = lanes_of(0.0);
-    out_D_x[95] = lanes_of(0.0);
-    out_D_x[96] = lanes_of(0.0);
-    out_D_x[97] = lanes_of(0.0);
-    out_D_x[98] = lanes_of(0.0);
-    out_D_x[99] = lanes_of(-1.0);
+    if (want_out_D_x) {
+        out_D_x[0] = t17;
+        out_D_x[1] = t14;
+        out_D_x[2] = t7;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = t15;
+        out_D_x[11] = t12;
+        out_D_x[12] = t8;
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(0.0);
+        out_D_x[20] = t20;
+        out_D_x[21] = t19;
+        out_D_x[22] = t18;
+        out_D_x[23] = lanes_of(0.0);
+        out_D_x[24] = lanes_of(0.0);
+        out_D_x[25] = lanes_of(0.0);
+        out_D_x[26] = lanes_of(0.0);
+        out_D_x[27] = lanes_of(0.0);
+        out_D_x[28] = lanes_of(0.0);
+        out_D_x[29] = lanes_of(0.0);
+        out_D_x[30] = t15 * t24 - t22 * t20;
+        out_D_x[31] = t24 * t12 - t22 * t19;
+        out_D_x[32] = t24 * t8 - t22 * t18;
+        out_D_x[33] = t17;
+        out_D_x[34] = t14;
+        out_D_x[35] = t7;
+        out_D_x[36] = t17 * t25;
+        out_D_x[37] = t14 * t25;
+        out_D_x[38] = t7 * t25;
+        out_D_x[39] = -x_vx;
+        out_D_x[40] = t21 * t20 - t17 * t24;
+        out_D_x[41] = t21 * t19 - t24 * t14;
+        out_D_x[42] = t21 * t18 - t24 * t7;
+        out_D_x[43] = t15;
+        out_D_x[44] = t12;
+        out_D_x[45] = t8;
+        out_D_x[46] = t15 * t25;
+        out_D_x[47] = t12 * t25;
+        out_D_x[48] = t8 * t25;
+        out_D_x[49] = -x_vy;
+        out_D_x[50] = t17 * t22 + t23 * t15;
+        out_D_x[51] = t22 * t14 + t23 * t12;
+        out_D_x[52] = t22 * t7 + t23 * t8;
+        out_D_x[53] = t20;
+        out_D_x[54] = t19;
+        out_D_x[55] = t18;
+        out_D_x[56] = t20 * t25;
+        out_D_x[57] = t19 * t25;
+        out_D_x[58] = t18 * t25;
+        out_D_x[59] = -x_vz;
+        out_D_x[60] = x_vy * t20 - x_vz * t15;
+        out_D_x[61] = x_vy * t19 - x_vz * t12;
+        out_D_x[62] = x_vy * t18 - x_vz * t8;
+        out_D_x[63] = lanes_of(0.0);
+        out_D_x[64] = lanes_of(0.0);
+        out_D_x[65] = lanes_of(0.0);
+        out_D_x[66] = t17;
+        out_D_x[67] = t14;
+        out_D_x[68] = t7;
+        out_D_x[69] = lanes_of(0.0);
+        out_D_x[70] = x_vz * t17 - x_vx * t20;
+        out_D_x[71] = x_vz * t14 - x_vx * t19;
+        out_D_x[72] = x_vz * t7 - x_vx * t18;
+        out_D_x[73] = lanes_of(0.0);
+        out_D_x[74] = lanes_of(0.0);
+        out_D_x[75] = lanes_of(0.0);
+        out_D_x[76] = t15;
+        out_D_x[77] = t12;
+        out_D_x[78] = t8;
+        out_D_x[79] = lanes_of(0.0);
+        out_D_x[80] = x_vx * t15 - x_vy * t17;
+        out_D_x[81] = x_vx * t12 - x_vy * t14;
+        out_D_x[82] = x_vx * t8 - x_vy * t7;
+        out_D_x[83] = lanes_of(0.0);
+        out_D_x[84] = lanes_of(0.0);
+        out_D_x[85] = lanes_of(0.0);
+        out_D_x[86] = t20;
+        out_D_x[87] = t19;
+        out_D_x[88] = t18;
+        out_D_x[89] = lanes_of(0.0);
+        out_D_x[90] = lanes_of(0.0);
+        out_D_x[91] = lanes_of(0.0);
+        out_D_x[92] = lanes_of(0.0);
+        out_D_x[93] = lanes_of(0.0);
+        out_D_x[94] = lanes_of(0.0);
+        out_D_x[95] = lanes_of(0.0);
+        out_D_x[96] = lanes_of(0.0);
+        out_D_x[97] = lanes_of(0.0);
+        out_D_x[98] = lanes_of(0.0);
+        out_D_x[99] = lanes_of(-1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -231,14 +234,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 100, n, k);
 }
 
-int liegen_groups_gal3_inverse_batch(
+LANES_WHOLE int liegen_groups_gal3_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 111 : 11);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -257,16 +261,14 @@ int liegen_groups_gal3_inverse_batch(
             }
             liegen_groups_load(x, 11, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 11, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 100, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 100, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

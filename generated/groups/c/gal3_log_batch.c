@@ -83,7 +83,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -140,20 +141,6 @@ static void block_jacobians(
     const lanes t41 = t29 * x_vy + (t24 * x_vz + t32 * x_vx);
     const lanes t42 = x_vy * t37 + (x_vz * t39 + x_vx * t25);
     const lanes t43 = x_vy * t40 + (x_vz * t36 + x_vx * t28);
-    const lanes t44 = t14 * (t14 * 3.328472381969466e-08 - 0.002774415758409675);
-    const lanes t45 = t14 * (t14 * (t44 + 3.524948491346294) - 1618.3819503577756);
-    const lanes t46 = t14 * (t14 * (t45 + 330365.05572739476) - 30057589.92197956);
-    const lanes t47 = t12 * t43 + (t10 * t42 + t11 * t41);
-    const lanes t48 = 0.002777777777777778 + (t46 + 989919839.2921487) * (t18 / t17);
-    const lanes t49 = t48 * t47;
-    const lanes t50 = t20 * t47;
-    const lanes t51 = -2.0 * t50 - t14 * t49;
-    const lanes t52 = t38 * (-2.0);
-    const lanes t53 = t12 * t49;
-    const lanes t54 = t33 * (-2.0);
-    const lanes t55 = t21 * (-2.0);
-    const lanes t56 = t11 * t49;
-    const lanes t57 = t41 * t33 + (t12 * t56 + t21 * t43);
     const lanes t58 = t12 * t41 - t11 * t43;
     const lanes t59 = 0.5 * t42;
     const lanes t60 = t10 * t43 - t12 * t42;
@@ -163,34 +150,9 @@ static void block_jacobians(
     const lanes t64 = 0.5 * t41;
     const lanes t65 = t20 * t62;
     const lanes t66 = 0.5 * t43;
-    const lanes t67 = t29 * x_y + (t32 * x_x + (t24 * x_z - x_t * (t64 + t63)));
-    const lanes t68 = t37 * x_y + (t25 * x_x + (t39 * x_z - x_t * (t59 + t61)));
-    const lanes t69 = t40 * x_y + (t28 * x_x + (t36 * x_z - x_t * (t66 + t65)));
-    const lanes t70 = t12 * t69 + (t10 * t68 + t11 * t67);
-    const lanes t71 = t58 * t48;
-    const lanes t72 = t70 * t48;
-    const lanes t73 = t70 * (2.0 * t20) + t14 * t72;
-    const lanes t74 = t50 * (t20 + t14 * t48);
-    const lanes t75 = t12 * t72;
-    const lanes t76 = t20 * t41 + t11 * t74;
-    const lanes t77 = t38 * t69 + (t10 * t75 + t33 * t68);
-    const lanes t78 = -0.5 * t67;
-    const lanes t79 = t11 * t72;
-    const lanes t80 = t20 * t43 + t12 * t74;
-    const lanes t81 = t38 * t67 + (t10 * t79 + t21 * t68);
-    const lanes t82 = -0.5 * t69;
-    const lanes t83 = t41 * t38 + (t10 * t56 + t21 * t42);
-    const lanes t84 = t62 * t48;
-    const lanes t85 = t20 * t42 + t10 * t74;
-    const lanes t86 = t33 * t67 + (t12 * t79 + t21 * t69);
-    const lanes t87 = -0.5 * t68;
-    const lanes t88 = t38 * t43 + (t10 * t53 + t33 * t42);
-    const lanes t89 = t60 * t48;
-    const lanes t90 = x_t * (t20 * t30 + (0.25 - t20));
-    const lanes t91 = t11 * t90;
-    const lanes t92 = t10 * t90;
-    const lanes t93 = t12 * t90;
-    const lanes t94 = x_t * (-0.5);
+    const lanes t67 = x_y * t29 + (x_x * t32 + (x_z * t24 - x_t * (t64 + t63)));
+    const lanes t68 = x_y * t37 + (x_x * t25 + (x_z * t39 - x_t * (t59 + t61)));
+    const lanes t69 = x_y * t40 + (x_x * t28 + (x_z * t36 - x_t * (t66 + t65)));
     out[0] = t11;
     out[1] = t12;
     out[2] = t10;
@@ -201,106 +163,147 @@ static void block_jacobians(
     out[7] = t43;
     out[8] = t42;
     out[9] = x_t;
-    out_D_x[0] = t32;
-    out_D_x[1] = t28;
-    out_D_x[2] = t25;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = t29;
-    out_D_x[11] = t40;
-    out_D_x[12] = t37;
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(0.0);
-    out_D_x[20] = t24;
-    out_D_x[21] = t36;
-    out_D_x[22] = t39;
-    out_D_x[23] = lanes_of(0.0);
-    out_D_x[24] = lanes_of(0.0);
-    out_D_x[25] = lanes_of(0.0);
-    out_D_x[26] = lanes_of(0.0);
-    out_D_x[27] = lanes_of(0.0);
-    out_D_x[28] = lanes_of(0.0);
-    out_D_x[29] = lanes_of(0.0);
-    out_D_x[30] = t11 * (t79 - x_t * t89) - (t73 + t67 * t55);
-    out_D_x[31] = x_t * (t85 - t12 * t89) + (t86 + t87);
-    out_D_x[32] = t81 - t82 - x_t * (t10 * t89 + t80);
-    out_D_x[33] = t32;
-    out_D_x[34] = t28;
-    out_D_x[35] = t25;
-    out_D_x[36] = t94;
-    out_D_x[37] = t92;
-    out_D_x[38] = -t93;
-    out_D_x[39] = t64 - t63;
-    out_D_x[40] = t86 - t87 - x_t * (t85 + t11 * t84);
-    out_D_x[41] = t12 * (t75 - x_t * t84) - t73 - t69 * t54;
-    out_D_x[42] = x_t * (t76 - t10 * t84) + (t77 + t78);
-    out_D_x[43] = t29;
-    out_D_x[44] = t40;
-    out_D_x[45] = t37;
-    out_D_x[46] = -t92;
-    out_D_x[47] = t94;
-    out_D_x[48] = t91;
-    out_D_x[49] = t66 - t65;
-    out_D_x[50] = x_t * (t80 - t11 * t71) + (t81 + t82);
-    out_D_x[51] = t77 - t78 - x_t * (t76 + t12 * t71);
-    out_D_x[52] = t10 * (t10 * t72 - x_t * t71) - t73 - t68 * t52;
-    out_D_x[53] = t24;
-    out_D_x[54] = t36;
-    out_D_x[55] = t39;
-    out_D_x[56] = t93;
-    out_D_x[57] = -t91;
-    out_D_x[58] = t94;
-    out_D_x[59] = t59 - t61;
-    out_D_x[60] = t11 * t56 + (t51 - t41 * t55);
-    out_D_x[61] = t57 - t59;
-    out_D_x[62] = t66 + t83;
-    out_D_x[63] = lanes_of(0.0);
-    out_D_x[64] = lanes_of(0.0);
-    out_D_x[65] = lanes_of(0.0);
-    out_D_x[66] = t32;
-    out_D_x[67] = t28;
-    out_D_x[68] = t25;
-    out_D_x[69] = lanes_of(0.0);
-    out_D_x[70] = t59 + t57;
-    out_D_x[71] = t51 + t12 * t53 - t43 * t54;
-    out_D_x[72] = t88 - t64;
-    out_D_x[73] = lanes_of(0.0);
-    out_D_x[74] = lanes_of(0.0);
-    out_D_x[75] = lanes_of(0.0);
-    out_D_x[76] = t29;
-    out_D_x[77] = t40;
-    out_D_x[78] = t37;
-    out_D_x[79] = lanes_of(0.0);
-    out_D_x[80] = t83 - t66;
-    out_D_x[81] = t64 + t88;
-    out_D_x[82] = t51 + t13 * t49 - t42 * t52;
-    out_D_x[83] = lanes_of(0.0);
-    out_D_x[84] = lanes_of(0.0);
-    out_D_x[85] = lanes_of(0.0);
-    out_D_x[86] = t24;
-    out_D_x[87] = t36;
-    out_D_x[88] = t39;
-    out_D_x[89] = lanes_of(0.0);
-    out_D_x[90] = lanes_of(0.0);
-    out_D_x[91] = lanes_of(0.0);
-    out_D_x[92] = lanes_of(0.0);
-    out_D_x[93] = lanes_of(0.0);
-    out_D_x[94] = lanes_of(0.0);
-    out_D_x[95] = lanes_of(0.0);
-    out_D_x[96] = lanes_of(0.0);
-    out_D_x[97] = lanes_of(0.0);
-    out_D_x[98] = lanes_of(0.0);
-    out_D_x[99] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t44 = t14 * (t14 * 3.328472381969466e-08 - 0.002774415758409675);
+        const lanes t45 = t14 * (t14 * (t44 + 3.524948491346294) - 1618.3819503577756);
+        const lanes t46 = t14 * (t14 * (t45 + 330365.05572739476) - 30057589.92197956);
+        const lanes t47 = t12 * t43 + (t10 * t42 + t11 * t41);
+        const lanes t48 = 0.002777777777777778 + (t46 + 989919839.2921487) * (t18 / t17);
+        const lanes t49 = t48 * t47;
+        const lanes t50 = t20 * t47;
+        const lanes t51 = -2.0 * t50 - t14 * t49;
+        const lanes t52 = t38 * (-2.0);
+        const lanes t53 = t33 * (-2.0);
+        const lanes t54 = t12 * t49;
+        const lanes t55 = t21 * (-2.0);
+        const lanes t56 = t11 * t49;
+        const lanes t57 = t12 * t56 + (t21 * t43 + t41 * t33);
+        const lanes t70 = t12 * t69 + (t10 * t68 + t11 * t67);
+        const lanes t71 = t70 * t48;
+        const lanes t72 = t70 * (2.0 * t20) + t14 * t71;
+        const lanes t73 = t58 * t48;
+        const lanes t74 = t50 * (t20 + t14 * t48);
+        const lanes t75 = t20 * t41 + t11 * t74;
+        const lanes t76 = t12 * t71;
+        const lanes t77 = t10 * t76 + (t33 * t68 + t38 * t69);
+        const lanes t78 = -0.5 * t67;
+        const lanes t79 = t20 * t43 + t12 * t74;
+        const lanes t80 = t11 * t71;
+        const lanes t81 = t10 * t80 + (t21 * t68 + t38 * t67);
+        const lanes t82 = -0.5 * t69;
+        const lanes t83 = t10 * t56 + (t21 * t42 + t41 * t38);
+        const lanes t84 = t62 * t48;
+        const lanes t85 = t20 * t42 + t10 * t74;
+        const lanes t86 = t12 * t80 + (t21 * t69 + t33 * t67);
+        const lanes t87 = -0.5 * t68;
+        const lanes t88 = t10 * t54 + (t33 * t42 + t38 * t43);
+        const lanes t89 = t60 * t48;
+        const lanes t90 = x_t * (t20 * t30 + (0.25 - t20));
+        const lanes t91 = t11 * t90;
+        const lanes t92 = t10 * t90;
+        const lanes t93 = t12 * t90;
+        const lanes t94 = -0.5 * x_t;
+        out_D_x[0] = t32;
+        out_D_x[1] = t28;
+        out_D_x[2] = t25;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = t29;
+        out_D_x[11] = t40;
+        out_D_x[12] = t37;
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(0.0);
+        out_D_x[20] = t24;
+        out_D_x[21] = t36;
+        out_D_x[22] = t39;
+        out_D_x[23] = lanes_of(0.0);
+        out_D_x[24] = lanes_of(0.0);
+        out_D_x[25] = lanes_of(0.0);
+        out_D_x[26] = lanes_of(0.0);
+        out_D_x[27] = lanes_of(0.0);
+        out_D_x[28] = lanes_of(0.0);
+        out_D_x[29] = lanes_of(0.0);
+        out_D_x[30] = t11 * (t80 - x_t * t89) - (t72 + t67 * t55);
+        out_D_x[31] = x_t * (t85 - t12 * t89) + (t87 + t86);
+        out_D_x[32] = t81 - t82 - x_t * (t10 * t89 + t79);
+        out_D_x[33] = t32;
+        out_D_x[34] = t28;
+        out_D_x[35] = t25;
+        out_D_x[36] = t94;
+        out_D_x[37] = t92;
+        out_D_x[38] = -t93;
+        out_D_x[39] = t64 - t63;
+        out_D_x[40] = t86 - t87 - x_t * (t85 + t11 * t84);
+        out_D_x[41] = t12 * (t76 - x_t * t84) - (t72 + t69 * t53);
+        out_D_x[42] = x_t * (t75 - t10 * t84) + (t78 + t77);
+        out_D_x[43] = t29;
+        out_D_x[44] = t40;
+        out_D_x[45] = t37;
+        out_D_x[46] = -t92;
+        out_D_x[47] = t94;
+        out_D_x[48] = t91;
+        out_D_x[49] = t66 - t65;
+        out_D_x[50] = x_t * (t79 - t11 * t73) + (t82 + t81);
+        out_D_x[51] = t77 - t78 - x_t * (t75 + t12 * t73);
+        out_D_x[52] = t10 * (t10 * t71 - x_t * t73) - (t72 + t68 * t52);
+        out_D_x[53] = t24;
+        out_D_x[54] = t36;
+        out_D_x[55] = t39;
+        out_D_x[56] = t93;
+        out_D_x[57] = -t91;
+        out_D_x[58] = t94;
+        out_D_x[59] = t59 - t61;
+        out_D_x[60] = t11 * t56 + (t51 - t41 * t55);
+        out_D_x[61] = t57 - t59;
+        out_D_x[62] = t66 + t83;
+        out_D_x[63] = lanes_of(0.0);
+        out_D_x[64] = lanes_of(0.0);
+        out_D_x[65] = lanes_of(0.0);
+        out_D_x[66] = t32;
+        out_D_x[67] = t28;
+        out_D_x[68] = t25;
+        out_D_x[69] = lanes_of(0.0);
+        out_D_x[70] = t59 + t57;
+        out_D_x[71] = t12 * t54 + (t51 - t43 * t53);
+        out_D_x[72] = t88 - t64;
+        out_D_x[73] = lanes_of(0.0);
+        out_D_x[74] = lanes_of(0.0);
+        out_D_x[75] = lanes_of(0.0);
+        out_D_x[76] = t29;
+        out_D_x[77] = t40;
+        out_D_x[78] = t37;
+        out_D_x[79] = lanes_of(0.0);
+        out_D_x[80] = t83 - t66;
+        out_D_x[81] = t64 + t88;
+        out_D_x[82] = t13 * t49 + (t51 - t42 * t52);
+        out_D_x[83] = lanes_of(0.0);
+        out_D_x[84] = lanes_of(0.0);
+        out_D_x[85] = lanes_of(0.0);
+        out_D_x[86] = t24;
+        out_D_x[87] = t36;
+        out_D_x[88] = t39;
+        out_D_x[89] = lanes_of(0.0);
+        out_D_x[90] = lanes_of(0.0);
+        out_D_x[91] = lanes_of(0.0);
+        out_D_x[92] = lanes_of(0.0);
+        out_D_x[93] = lanes_of(0.0);
+        out_D_x[94] = lanes_of(0.0);
+        out_D_x[95] = lanes_of(0.0);
+        out_D_x[96] = lanes_of(0.0);
+        out_D_x[97] = lanes_of(0.0);
+        out_D_x[98] = lanes_of(0.0);
+        out_D_x[99] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -316,14 +319,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 100, n, k);
 }
 
-int liegen_groups_gal3_log_batch(
+LANES_WHOLE int liegen_groups_gal3_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 110 : 10);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -342,16 +346,14 @@ int liegen_groups_gal3_log_batch(
             }
             liegen_groups_load(x, 11, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 10, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 100, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 100, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -15,9 +15,9 @@
 /*
  * Arrays of a batch, for the functions NAME_batch. Number c of factor k is
  *   data[i * stride + c * comp],  i = index[k], or k where index is NULL.
- * stride and comp count doubles. stride 0: one value for all factors. comp 1: array of structures, for
+ * stride and comp count numbers. stride 0: one value for all factors. comp 1: array of structures, for
  * example stride 7 for packed poses. stride 1 and comp n: structure of arrays. data must be aligned as
- * double is, no more. What an index leads to must be inside the array: it is not checked.
+ * a number is, no more. What an index leads to must be inside the array: it is not checked.
  */
 typedef struct {
     const double *data;

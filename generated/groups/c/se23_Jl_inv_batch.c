@@ -50,43 +50,43 @@ static void block_value(
     const lanes t25 = t24 * 2.0;
     const lanes t26 = d_v1 * t18;
     const lanes t27 = d_v1 * t22;
-    const lanes t28 = t24 * d_v7 + (d_v2 * t27 + t26 * d_v8);
+    const lanes t28 = d_v2 * t27 + (t26 * d_v8 + t24 * d_v7);
     const lanes t29 = 0.5 * d_v6;
     const lanes t30 = t26 * 2.0;
-    const lanes t31 = d_v0 * t22;
-    const lanes t32 = d_v0 * t18;
-    const lanes t33 = t24 * d_v6 + (d_v2 * t31 + t32 * d_v8);
+    const lanes t31 = d_v0 * t18;
+    const lanes t32 = d_v0 * t22;
+    const lanes t33 = d_v2 * t32 + (t31 * d_v8 + t24 * d_v6);
     const lanes t34 = 0.5 * d_v7;
-    const lanes t35 = t26 * d_v6 + (d_v1 * t31 + t32 * d_v7);
+    const lanes t35 = d_v1 * t32 + (t31 * d_v7 + t26 * d_v6);
     const lanes t36 = 0.5 * d_v8;
-    const lanes t37 = t32 * 2.0;
+    const lanes t37 = t31 * 2.0;
     const lanes t38 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
     const lanes t39 = t38 * t20;
     const lanes t40 = 2.0 * (t18 * t38) + t1 * t39;
     const lanes t41 = d_v1 * t39;
-    const lanes t42 = t24 * d_v4 + (d_v2 * t41 + t26 * d_v5);
+    const lanes t42 = d_v2 * t41 + (t26 * d_v5 + t24 * d_v4);
     const lanes t43 = 0.5 * d_v3;
     const lanes t44 = d_v0 * t39;
-    const lanes t45 = t24 * d_v3 + (d_v2 * t44 + t32 * d_v5);
+    const lanes t45 = d_v2 * t44 + (t31 * d_v5 + t24 * d_v3);
     const lanes t46 = 0.5 * d_v4;
-    const lanes t47 = t26 * d_v3 + (d_v1 * t44 + t32 * d_v4);
+    const lanes t47 = d_v1 * t44 + (t31 * d_v4 + t26 * d_v3);
     const lanes t48 = 0.5 * d_v5;
     const lanes t49 = d_v0 * 0.5;
     const lanes t50 = d_v2 * t26;
     const lanes t51 = t50 - t49;
     const lanes t52 = t50 + t49;
     const lanes t53 = d_v1 * 0.5;
-    const lanes t54 = d_v2 * t32;
+    const lanes t54 = d_v2 * t31;
     const lanes t55 = t54 + t53;
     const lanes t56 = t54 - t53;
     const lanes t57 = d_v2 * 0.5;
-    const lanes t58 = d_v1 * t32;
+    const lanes t58 = d_v1 * t31;
     const lanes t59 = t58 - t57;
     const lanes t60 = t58 + t57;
     const lanes t61 = 1.0 - t1 * t18;
     const lanes t62 = t61 + d_v2 * t24;
     const lanes t63 = t61 + d_v1 * t26;
-    const lanes t64 = t61 + d_v0 * t32;
+    const lanes t64 = t61 + d_v0 * t31;
     out[0] = t64;
     out[1] = t60;
     out[2] = t56;
@@ -124,7 +124,7 @@ static void block_value(
     out[34] = lanes_of(0.0);
     out[35] = lanes_of(0.0);
     out[36] = t47 - t48;
-    out[37] = d_v4 * t30 + (d_v1 * t41 - t40);
+    out[37] = d_v1 * t41 + (d_v4 * t30 - t40);
     out[38] = t42 + t43;
     out[39] = t59;
     out[40] = t63;
@@ -134,14 +134,14 @@ static void block_value(
     out[44] = lanes_of(0.0);
     out[45] = t45 + t46;
     out[46] = t42 - t43;
-    out[47] = d_v5 * t25 + (t0 * t39 - t40);
+    out[47] = t0 * t39 + (d_v5 * t25 - t40);
     out[48] = t55;
     out[49] = t51;
     out[50] = t62;
     out[51] = lanes_of(0.0);
     out[52] = lanes_of(0.0);
     out[53] = lanes_of(0.0);
-    out[54] = d_v0 * t31 + (t37 * d_v6 - t23);
+    out[54] = d_v0 * t32 + (t37 * d_v6 - t23);
     out[55] = t35 + t36;
     out[56] = t33 - t34;
     out[57] = lanes_of(0.0);
@@ -151,7 +151,7 @@ static void block_value(
     out[61] = t60;
     out[62] = t56;
     out[63] = t35 - t36;
-    out[64] = t30 * d_v7 + (d_v1 * t27 - t23);
+    out[64] = d_v1 * t27 + (t30 * d_v7 - t23);
     out[65] = t28 + t29;
     out[66] = lanes_of(0.0);
     out[67] = lanes_of(0.0);
@@ -161,7 +161,7 @@ static void block_value(
     out[71] = t52;
     out[72] = t33 + t34;
     out[73] = t28 - t29;
-    out[74] = t25 * d_v8 + (t0 * t22 - t23);
+    out[74] = t0 * t22 + (t25 * d_v8 - t23);
     out[75] = lanes_of(0.0);
     out[76] = lanes_of(0.0);
     out[77] = lanes_of(0.0);
@@ -181,7 +181,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 81, n, k);
 }
 
-int liegen_groups_se23_Jl_inv_batch(
+LANES_WHOLE int liegen_groups_se23_Jl_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

@@ -139,7 +139,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 81, n, k);
 }
 
-int liegen_groups_se23_adjoint_batch(
+LANES_WHOLE int liegen_groups_se23_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,

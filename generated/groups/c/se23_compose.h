@@ -60,7 +60,7 @@ int liegen_groups_se23_compose(
     double *out_D_x,
     double *out_D_y);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_se23_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,

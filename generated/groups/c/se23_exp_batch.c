@@ -72,7 +72,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *d,
     lanes *out,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_d)
 {
     const lanes d_v0 = d[0];
     const lanes d_v1 = d[1];
@@ -93,16 +94,9 @@ static void block_jacobians(
     const lanes t8 = t6 / t5;
     const lanes t9 = t8 * t7;
     const lanes t10 = 0.25 / t4;
-    const lanes t11 = (t9 + 0.16666666666666666 * (t1 - 6.0)) * (t10 * t10);
-    const lanes t12 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
-    const lanes t13 = t1 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
-    const lanes t14 = t1 * (t1 * t13 + 2.0876755542005065e-09) - 2.755731919615483e-07;
-    const lanes t15 = t1 * (t1 * t14 + 2.4801587301323603e-05) - 0.0013888888888887987;
     const lanes t16 = 0.5 * t8;
     const lanes t17 = t8 * t16;
-    const lanes t18 = t1 * t15 + 0.041666666666666664;
     const lanes_mask t19 = t1 < 10.0;
-    const lanes t20 = lanes_select(t19, t18, t10 * (0.5 - t17));
     const lanes t21 = t1 * (t1 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t22 = t1 * (t1 * (t21 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t23 = t1 * (t1 * (t22 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -110,52 +104,23 @@ static void block_jacobians(
     const lanes t25 = t24 + 0.008333333333333333;
     const lanes t26 = 0.16666666666666666 - t1 * t25;
     const lanes t27 = lanes_select(t19, t26, (1.0 - t9) * t10);
-    const lanes t28 = d_v1 * d_v7 + (d_v2 * d_v8 + d_v0 * d_v6);
-    const lanes t29 = 3.0 * lanes_select(t19, t25, t11) - t20;
-    const lanes t30 = t29 * t28;
-    const lanes t31 = 2.0 * (t27 * t28) + t1 * t30;
     const lanes t32 = d_v2 * t27;
-    const lanes t33 = t32 * 2.0;
     const lanes t34 = d_v1 * t27;
-    const lanes t35 = d_v1 * t30;
-    const lanes t36 = t27 + t20 * (-2.0);
-    const lanes t37 = t36 * t28;
-    const lanes t38 = d_v0 * t37 - t17 * d_v6;
-    const lanes t39 = t32 * d_v7 + (d_v2 * t35 + t34 * d_v8);
-    const lanes t40 = t34 * 2.0;
-    const lanes t41 = d_v0 * t30;
-    const lanes t42 = d_v0 * t27;
-    const lanes t43 = d_v1 * t37 - t17 * d_v7;
-    const lanes t44 = t32 * d_v6 + (d_v2 * t41 + t42 * d_v8);
-    const lanes t45 = d_v2 * t37 - t17 * d_v8;
-    const lanes t46 = t34 * d_v6 + (d_v1 * t41 + t42 * d_v7);
-    const lanes t47 = t42 * 2.0;
-    const lanes t48 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
-    const lanes t49 = t48 * t29;
-    const lanes t50 = 2.0 * (t27 * t48) + t1 * t49;
-    const lanes t51 = t48 * t36;
-    const lanes t52 = d_v1 * t49;
-    const lanes t53 = d_v0 * t51 - t17 * d_v3;
-    const lanes t54 = d_v4 * t32 + (d_v2 * t52 + d_v5 * t34);
-    const lanes t55 = d_v0 * t49;
-    const lanes t56 = d_v1 * t51 - t17 * d_v4;
-    const lanes t57 = d_v3 * t32 + (d_v2 * t55 + d_v5 * t42);
-    const lanes t58 = d_v2 * t51 - d_v5 * t17;
-    const lanes t59 = d_v3 * t34 + (d_v1 * t55 + t42 * d_v4);
+    const lanes t41 = d_v0 * t27;
     const lanes t60 = 1.0 - t1 * t27;
     const lanes t61 = t60 + d_v2 * t32;
     const lanes t62 = d_v1 * t17;
-    const lanes t63 = d_v2 * t42;
+    const lanes t63 = d_v2 * t41;
     const lanes t64 = t63 - t62;
     const lanes t65 = d_v0 * t17;
     const lanes t66 = d_v2 * t34;
     const lanes t67 = t66 + t65;
     const lanes t68 = t66 - t65;
     const lanes t69 = d_v2 * t17;
-    const lanes t70 = d_v1 * t42;
+    const lanes t70 = d_v1 * t41;
     const lanes t71 = t70 + t69;
     const lanes t72 = t60 + d_v1 * t34;
-    const lanes t73 = t60 + d_v0 * t42;
+    const lanes t73 = t60 + d_v0 * t41;
     const lanes t74 = t63 + t62;
     const lanes t75 = t70 - t69;
     out[0] = d_v0 * t16;
@@ -168,87 +133,125 @@ static void block_jacobians(
     out[7] = t75 * d_v7 + (t74 * d_v8 + t73 * d_v6);
     out[8] = t72 * d_v7 + (t68 * d_v8 + t71 * d_v6);
     out[9] = t67 * d_v7 + (t61 * d_v8 + t64 * d_v6);
-    out_D_d[0] = t73;
-    out_D_d[1] = t71;
-    out_D_d[2] = t64;
-    out_D_d[3] = lanes_of(0.0);
-    out_D_d[4] = lanes_of(0.0);
-    out_D_d[5] = lanes_of(0.0);
-    out_D_d[6] = lanes_of(0.0);
-    out_D_d[7] = lanes_of(0.0);
-    out_D_d[8] = lanes_of(0.0);
-    out_D_d[9] = t75;
-    out_D_d[10] = t72;
-    out_D_d[11] = t67;
-    out_D_d[12] = lanes_of(0.0);
-    out_D_d[13] = lanes_of(0.0);
-    out_D_d[14] = lanes_of(0.0);
-    out_D_d[15] = lanes_of(0.0);
-    out_D_d[16] = lanes_of(0.0);
-    out_D_d[17] = lanes_of(0.0);
-    out_D_d[18] = t74;
-    out_D_d[19] = t68;
-    out_D_d[20] = t61;
-    out_D_d[21] = lanes_of(0.0);
-    out_D_d[22] = lanes_of(0.0);
-    out_D_d[23] = lanes_of(0.0);
-    out_D_d[24] = lanes_of(0.0);
-    out_D_d[25] = lanes_of(0.0);
-    out_D_d[26] = lanes_of(0.0);
-    out_D_d[27] = d_v0 * t55 + (d_v3 * t47 - t50);
-    out_D_d[28] = t59 - t58;
-    out_D_d[29] = t57 + t56;
-    out_D_d[30] = t73;
-    out_D_d[31] = t71;
-    out_D_d[32] = t64;
-    out_D_d[33] = lanes_of(0.0);
-    out_D_d[34] = lanes_of(0.0);
-    out_D_d[35] = lanes_of(0.0);
-    out_D_d[36] = t59 + t58;
-    out_D_d[37] = d_v4 * t40 + (d_v1 * t52 - t50);
-    out_D_d[38] = t54 - t53;
-    out_D_d[39] = t75;
-    out_D_d[40] = t72;
-    out_D_d[41] = t67;
-    out_D_d[42] = lanes_of(0.0);
-    out_D_d[43] = lanes_of(0.0);
-    out_D_d[44] = lanes_of(0.0);
-    out_D_d[45] = t57 - t56;
-    out_D_d[46] = t54 + t53;
-    out_D_d[47] = d_v5 * t33 + (t0 * t49 - t50);
-    out_D_d[48] = t74;
-    out_D_d[49] = t68;
-    out_D_d[50] = t61;
-    out_D_d[51] = lanes_of(0.0);
-    out_D_d[52] = lanes_of(0.0);
-    out_D_d[53] = lanes_of(0.0);
-    out_D_d[54] = d_v0 * t41 + (d_v6 * t47 - t31);
-    out_D_d[55] = t46 - t45;
-    out_D_d[56] = t44 + t43;
-    out_D_d[57] = lanes_of(0.0);
-    out_D_d[58] = lanes_of(0.0);
-    out_D_d[59] = lanes_of(0.0);
-    out_D_d[60] = t73;
-    out_D_d[61] = t71;
-    out_D_d[62] = t64;
-    out_D_d[63] = t46 + t45;
-    out_D_d[64] = d_v7 * t40 + (d_v1 * t35 - t31);
-    out_D_d[65] = t39 - t38;
-    out_D_d[66] = lanes_of(0.0);
-    out_D_d[67] = lanes_of(0.0);
-    out_D_d[68] = lanes_of(0.0);
-    out_D_d[69] = t75;
-    out_D_d[70] = t72;
-    out_D_d[71] = t67;
-    out_D_d[72] = t44 - t43;
-    out_D_d[73] = t39 + t38;
-    out_D_d[74] = d_v8 * t33 + (t0 * t30 - t31);
-    out_D_d[75] = lanes_of(0.0);
-    out_D_d[76] = lanes_of(0.0);
-    out_D_d[77] = lanes_of(0.0);
-    out_D_d[78] = t74;
-    out_D_d[79] = t68;
-    out_D_d[80] = t61;
+    if (want_out_D_d) {
+        const lanes t11 = (t9 + 0.16666666666666666 * (t1 - 6.0)) * (t10 * t10);
+        const lanes t12 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
+        const lanes t13 = t1 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
+        const lanes t14 = t1 * (t1 * t13 + 2.0876755542005065e-09) - 2.755731919615483e-07;
+        const lanes t15 = t1 * (t1 * t14 + 2.4801587301323603e-05) - 0.0013888888888887987;
+        const lanes t18 = t1 * t15 + 0.041666666666666664;
+        const lanes t20 = lanes_select(t19, t18, t10 * (0.5 - t17));
+        const lanes t28 = d_v1 * d_v7 + (d_v2 * d_v8 + d_v0 * d_v6);
+        const lanes t29 = 3.0 * lanes_select(t19, t25, t11) - t20;
+        const lanes t30 = t29 * t28;
+        const lanes t31 = 2.0 * (t27 * t28) + t1 * t30;
+        const lanes t33 = t32 * 2.0;
+        const lanes t35 = t27 + t20 * (-2.0);
+        const lanes t36 = t35 * t28;
+        const lanes t37 = d_v0 * t36 - t17 * d_v6;
+        const lanes t38 = d_v1 * t30;
+        const lanes t39 = d_v2 * t38 + (t34 * d_v8 + t32 * d_v7);
+        const lanes t40 = t34 * 2.0;
+        const lanes t42 = d_v1 * t36 - t17 * d_v7;
+        const lanes t43 = d_v0 * t30;
+        const lanes t44 = d_v2 * t43 + (t41 * d_v8 + t32 * d_v6);
+        const lanes t45 = d_v2 * t36 - t17 * d_v8;
+        const lanes t46 = d_v1 * t43 + (t41 * d_v7 + t34 * d_v6);
+        const lanes t47 = t41 * 2.0;
+        const lanes t48 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
+        const lanes t49 = t48 * t29;
+        const lanes t50 = 2.0 * (t27 * t48) + t1 * t49;
+        const lanes t51 = t48 * t35;
+        const lanes t52 = d_v0 * t51 - t17 * d_v3;
+        const lanes t53 = d_v1 * t49;
+        const lanes t54 = d_v2 * t53 + (d_v5 * t34 + d_v4 * t32);
+        const lanes t55 = d_v1 * t51 - t17 * d_v4;
+        const lanes t56 = d_v0 * t49;
+        const lanes t57 = d_v2 * t56 + (d_v5 * t41 + d_v3 * t32);
+        const lanes t58 = d_v2 * t51 - d_v5 * t17;
+        const lanes t59 = d_v1 * t56 + (t41 * d_v4 + d_v3 * t34);
+        out_D_d[0] = t73;
+        out_D_d[1] = t71;
+        out_D_d[2] = t64;
+        out_D_d[3] = lanes_of(0.0);
+        out_D_d[4] = lanes_of(0.0);
+        out_D_d[5] = lanes_of(0.0);
+        out_D_d[6] = lanes_of(0.0);
+        out_D_d[7] = lanes_of(0.0);
+        out_D_d[8] = lanes_of(0.0);
+        out_D_d[9] = t75;
+        out_D_d[10] = t72;
+        out_D_d[11] = t67;
+        out_D_d[12] = lanes_of(0.0);
+        out_D_d[13] = lanes_of(0.0);
+        out_D_d[14] = lanes_of(0.0);
+        out_D_d[15] = lanes_of(0.0);
+        out_D_d[16] = lanes_of(0.0);
+        out_D_d[17] = lanes_of(0.0);
+        out_D_d[18] = t74;
+        out_D_d[19] = t68;
+        out_D_d[20] = t61;
+        out_D_d[21] = lanes_of(0.0);
+        out_D_d[22] = lanes_of(0.0);
+        out_D_d[23] = lanes_of(0.0);
+        out_D_d[24] = lanes_of(0.0);
+        out_D_d[25] = lanes_of(0.0);
+        out_D_d[26] = lanes_of(0.0);
+        out_D_d[27] = d_v0 * t56 + (d_v3 * t47 - t50);
+        out_D_d[28] = t59 - t58;
+        out_D_d[29] = t57 + t55;
+        out_D_d[30] = t73;
+        out_D_d[31] = t71;
+        out_D_d[32] = t64;
+        out_D_d[33] = lanes_of(0.0);
+        out_D_d[34] = lanes_of(0.0);
+        out_D_d[35] = lanes_of(0.0);
+        out_D_d[36] = t59 + t58;
+        out_D_d[37] = d_v1 * t53 + (d_v4 * t40 - t50);
+        out_D_d[38] = t54 - t52;
+        out_D_d[39] = t75;
+        out_D_d[40] = t72;
+        out_D_d[41] = t67;
+        out_D_d[42] = lanes_of(0.0);
+        out_D_d[43] = lanes_of(0.0);
+        out_D_d[44] = lanes_of(0.0);
+        out_D_d[45] = t57 - t55;
+        out_D_d[46] = t54 + t52;
+        out_D_d[47] = t0 * t49 + (d_v5 * t33 - t50);
+        out_D_d[48] = t74;
+        out_D_d[49] = t68;
+        out_D_d[50] = t61;
+        out_D_d[51] = lanes_of(0.0);
+        out_D_d[52] = lanes_of(0.0);
+        out_D_d[53] = lanes_of(0.0);
+        out_D_d[54] = d_v0 * t43 + (d_v6 * t47 - t31);
+        out_D_d[55] = t46 - t45;
+        out_D_d[56] = t44 + t42;
+        out_D_d[57] = lanes_of(0.0);
+        out_D_d[58] = lanes_of(0.0);
+        out_D_d[59] = lanes_of(0.0);
+        out_D_d[60] = t73;
+        out_D_d[61] = t71;
+        out_D_d[62] = t64;
+        out_D_d[63] = t46 + t45;
+        out_D_d[64] = d_v1 * t38 + (d_v7 * t40 - t31);
+        out_D_d[65] = t39 - t37;
+        out_D_d[66] = lanes_of(0.0);
+        out_D_d[67] = lanes_of(0.0);
+        out_D_d[68] = lanes_of(0.0);
+        out_D_d[69] = t75;
+        out_D_d[70] = t72;
+        out_D_d[71] = t67;
+        out_D_d[72] = t44 - t42;
+        out_D_d[73] = t39 + t37;
+        out_D_d[74] = t0 * t30 + (d_v8 * t33 - t31);
+        out_D_d[75] = lanes_of(0.0);
+        out_D_d[76] = lanes_of(0.0);
+        out_D_d[77] = lanes_of(0.0);
+        out_D_d[78] = t74;
+        out_D_d[79] = t68;
+        out_D_d[80] = t61;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -264,14 +267,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 81, n, k);
 }
 
-int liegen_groups_se23_exp_batch(
+LANES_WHOLE int liegen_groups_se23_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_d.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 91 : 10);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -290,16 +294,14 @@ int liegen_groups_se23_exp_batch(
             }
             liegen_groups_load(d, 9, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
+                block_jacobians(d_lanes, out_lanes, out_D_d_lanes, want_out_D_d);
             }
             if (!jacobians) {
                 block_value(d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 10, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_d, 81, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_d) liegen_groups_store(out_D_d, 81, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_d_pen);

@@ -25,35 +25,35 @@ static void block_value(
     const lanes x_vy = x[8];
     const lanes x_vz = x[9];
     const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
+    const lanes t1 = x_qw * t0;
     const lanes t2 = x_qz * 2.0;
-    const lanes t3 = x_qz * t2;
+    const lanes t3 = x_qx * t2;
     const lanes t4 = t1 - t3;
     const lanes t5 = x_qx * t0;
     const lanes t6 = x_qw * t2;
     const lanes t7 = t5 + t6;
-    const lanes t8 = x_qw * t0;
-    const lanes t9 = x_qx * t2;
+    const lanes t8 = 1.0 - x_qy * t0;
+    const lanes t9 = x_qz * t2;
     const lanes t10 = t8 - t9;
-    const lanes t11 = x_qx * 2.0;
-    const lanes t12 = x_qx * t11;
-    const lanes t13 = t12 + (t3 - 1.0);
-    const lanes t14 = t5 - t6;
-    const lanes t15 = x_qy * t2;
-    const lanes t16 = x_qw * t11;
-    const lanes t17 = t15 + t16;
-    const lanes t18 = t15 - t16;
-    const lanes t19 = t8 + t9;
-    const lanes t20 = t12 - t1;
+    const lanes t11 = x_qy * t2;
+    const lanes t12 = x_qx * 2.0;
+    const lanes t13 = x_qw * t12;
+    const lanes t14 = t11 + t13;
+    const lanes t15 = t5 - t6;
+    const lanes t16 = x_qx * t12;
+    const lanes t17 = t9 + (t16 - 1.0);
+    const lanes t18 = t11 - t13;
+    const lanes t19 = t1 + t3;
+    const lanes t20 = t16 - t8;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = x_z * t10 - (x_x * t4 + x_y * t7);
-    out[5] = x_y * t13 - x_x * t14 - x_z * t17;
+    out[4] = x_z * t4 - x_y * t7 - x_x * t10;
+    out[5] = x_y * t17 - (x_z * t14 + x_x * t15);
     out[6] = x_z * t20 - (x_y * t18 + x_x * t19);
-    out[7] = t10 * x_vz - (t4 * x_vx + t7 * x_vy);
-    out[8] = t13 * x_vy - t14 * x_vx - t17 * x_vz;
+    out[7] = t4 * x_vz - t7 * x_vy - t10 * x_vx;
+    out[8] = t17 * x_vy - (t14 * x_vz + t15 * x_vx);
     out[9] = t20 * x_vz - (t18 * x_vy + t19 * x_vx);
 }
 
@@ -61,7 +61,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -104,87 +105,89 @@ static void block_jacobians(
     out[7] = t10 * x_vz + (t4 * x_vx + t7 * x_vy);
     out[8] = t17 * x_vz + (t11 * x_vx + t14 * x_vy);
     out[9] = t20 * x_vz + (t18 * x_vy + t19 * x_vx);
-    out_D_x[0] = t4;
-    out_D_x[1] = t11;
-    out_D_x[2] = t19;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = t7;
-    out_D_x[10] = t14;
-    out_D_x[11] = t18;
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = t10;
-    out_D_x[19] = t17;
-    out_D_x[20] = t20;
-    out_D_x[21] = lanes_of(0.0);
-    out_D_x[22] = lanes_of(0.0);
-    out_D_x[23] = lanes_of(0.0);
-    out_D_x[24] = lanes_of(0.0);
-    out_D_x[25] = lanes_of(0.0);
-    out_D_x[26] = lanes_of(0.0);
-    out_D_x[27] = x_y * t10 - t7 * x_z;
-    out_D_x[28] = x_y * t17 - x_z * t14;
-    out_D_x[29] = x_y * t20 - x_z * t18;
-    out_D_x[30] = t4;
-    out_D_x[31] = t11;
-    out_D_x[32] = t19;
-    out_D_x[33] = lanes_of(0.0);
-    out_D_x[34] = lanes_of(0.0);
-    out_D_x[35] = lanes_of(0.0);
-    out_D_x[36] = t4 * x_z - x_x * t10;
-    out_D_x[37] = x_z * t11 - x_x * t17;
-    out_D_x[38] = x_z * t19 - x_x * t20;
-    out_D_x[39] = t7;
-    out_D_x[40] = t14;
-    out_D_x[41] = t18;
-    out_D_x[42] = lanes_of(0.0);
-    out_D_x[43] = lanes_of(0.0);
-    out_D_x[44] = lanes_of(0.0);
-    out_D_x[45] = x_x * t7 - t4 * x_y;
-    out_D_x[46] = x_x * t14 - x_y * t11;
-    out_D_x[47] = x_x * t18 - x_y * t19;
-    out_D_x[48] = t10;
-    out_D_x[49] = t17;
-    out_D_x[50] = t20;
-    out_D_x[51] = lanes_of(0.0);
-    out_D_x[52] = lanes_of(0.0);
-    out_D_x[53] = lanes_of(0.0);
-    out_D_x[54] = t10 * x_vy - t7 * x_vz;
-    out_D_x[55] = t17 * x_vy - t14 * x_vz;
-    out_D_x[56] = t20 * x_vy - t18 * x_vz;
-    out_D_x[57] = lanes_of(0.0);
-    out_D_x[58] = lanes_of(0.0);
-    out_D_x[59] = lanes_of(0.0);
-    out_D_x[60] = t4;
-    out_D_x[61] = t11;
-    out_D_x[62] = t19;
-    out_D_x[63] = t4 * x_vz - t10 * x_vx;
-    out_D_x[64] = t11 * x_vz - t17 * x_vx;
-    out_D_x[65] = t19 * x_vz - t20 * x_vx;
-    out_D_x[66] = lanes_of(0.0);
-    out_D_x[67] = lanes_of(0.0);
-    out_D_x[68] = lanes_of(0.0);
-    out_D_x[69] = t7;
-    out_D_x[70] = t14;
-    out_D_x[71] = t18;
-    out_D_x[72] = t7 * x_vx - t4 * x_vy;
-    out_D_x[73] = t14 * x_vx - t11 * x_vy;
-    out_D_x[74] = t18 * x_vx - t19 * x_vy;
-    out_D_x[75] = lanes_of(0.0);
-    out_D_x[76] = lanes_of(0.0);
-    out_D_x[77] = lanes_of(0.0);
-    out_D_x[78] = t10;
-    out_D_x[79] = t17;
-    out_D_x[80] = t20;
+    if (want_out_D_x) {
+        out_D_x[0] = t4;
+        out_D_x[1] = t11;
+        out_D_x[2] = t19;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = t7;
+        out_D_x[10] = t14;
+        out_D_x[11] = t18;
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = t10;
+        out_D_x[19] = t17;
+        out_D_x[20] = t20;
+        out_D_x[21] = lanes_of(0.0);
+        out_D_x[22] = lanes_of(0.0);
+        out_D_x[23] = lanes_of(0.0);
+        out_D_x[24] = lanes_of(0.0);
+        out_D_x[25] = lanes_of(0.0);
+        out_D_x[26] = lanes_of(0.0);
+        out_D_x[27] = x_y * t10 - t7 * x_z;
+        out_D_x[28] = x_y * t17 - x_z * t14;
+        out_D_x[29] = x_y * t20 - x_z * t18;
+        out_D_x[30] = t4;
+        out_D_x[31] = t11;
+        out_D_x[32] = t19;
+        out_D_x[33] = lanes_of(0.0);
+        out_D_x[34] = lanes_of(0.0);
+        out_D_x[35] = lanes_of(0.0);
+        out_D_x[36] = t4 * x_z - x_x * t10;
+        out_D_x[37] = x_z * t11 - x_x * t17;
+        out_D_x[38] = x_z * t19 - x_x * t20;
+        out_D_x[39] = t7;
+        out_D_x[40] = t14;
+        out_D_x[41] = t18;
+        out_D_x[42] = lanes_of(0.0);
+        out_D_x[43] = lanes_of(0.0);
+        out_D_x[44] = lanes_of(0.0);
+        out_D_x[45] = x_x * t7 - t4 * x_y;
+        out_D_x[46] = x_x * t14 - x_y * t11;
+        out_D_x[47] = x_x * t18 - x_y * t19;
+        out_D_x[48] = t10;
+        out_D_x[49] = t17;
+        out_D_x[50] = t20;
+        out_D_x[51] = lanes_of(0.0);
+        out_D_x[52] = lanes_of(0.0);
+        out_D_x[53] = lanes_of(0.0);
+        out_D_x[54] = t10 * x_vy - t7 * x_vz;
+        out_D_x[55] = t17 * x_vy - t14 * x_vz;
+        out_D_x[56] = t20 * x_vy - t18 * x_vz;
+        out_D_x[57] = lanes_of(0.0);
+        out_D_x[58] = lanes_of(0.0);
+        out_D_x[59] = lanes_of(0.0);
+        out_D_x[60] = t4;
+        out_D_x[61] = t11;
+        out_D_x[62] = t19;
+        out_D_x[63] = t4 * x_vz - t10 * x_vx;
+        out_D_x[64] = t11 * x_vz - t17 * x_vx;
+        out_D_x[65] = t19 * x_vz - t20 * x_vx;
+        out_D_x[66] = lanes_of(0.0);
+        out_D_x[67] = lanes_of(0.0);
+        out_D_x[68] = lanes_of(0.0);
+        out_D_x[69] = t7;
+        out_D_x[70] = t14;
+        out_D_x[71] = t18;
+        out_D_x[72] = t7 * x_vx - t4 * x_vy;
+        out_D_x[73] = t14 * x_vx - t11 * x_vy;
+        out_D_x[74] = t18 * x_vx - t19 * x_vy;
+        out_D_x[75] = lanes_of(0.0);
+        out_D_x[76] = lanes_of(0.0);
+        out_D_x[77] = lanes_of(0.0);
+        out_D_x[78] = t10;
+        out_D_x[79] = t17;
+        out_D_x[80] = t20;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -200,14 +203,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 81, n, k);
 }
 
-int liegen_groups_se23_inverse_batch(
+LANES_WHOLE int liegen_groups_se23_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 91 : 10);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -226,16 +230,14 @@ int liegen_groups_se23_inverse_batch(
             }
             liegen_groups_load(x, 10, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 10, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 81, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 81, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -75,7 +75,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -133,36 +134,6 @@ static void block_jacobians(
     const lanes t43 = t29 * x_vy + (t24 * x_vz + t26 * x_vx);
     const lanes t44 = t36 * x_vy + (t34 * x_vz + t35 * x_vx);
     const lanes t45 = t41 * x_vy + (t39 * x_vz + t40 * x_vx);
-    const lanes t46 = t11 * t37 + (t12 * t42 + t10 * t30);
-    const lanes t47 = 2.0 * t20;
-    const lanes t48 = t14 * (t14 * 3.328472381969466e-08 - 0.002774415758409675);
-    const lanes t49 = t14 * (t14 * (t48 + 3.524948491346294) - 1618.3819503577756);
-    const lanes t50 = t14 * (t14 * (t49 + 330365.05572739476) - 30057589.92197956);
-    const lanes t51 = 0.002777777777777778 + (t50 + 989919839.2921487) * (t18 / t17);
-    const lanes t52 = t46 * t51;
-    const lanes t53 = t46 * t47 + t14 * t52;
-    const lanes t54 = t21 * (-2.0);
-    const lanes t55 = t10 * t52;
-    const lanes t56 = t30 * t31 + (t11 * t55 + t21 * t37);
-    const lanes t57 = 0.5 * t42;
-    const lanes t58 = t30 * t38 + (t12 * t55 + t21 * t42);
-    const lanes t59 = 0.5 * t37;
-    const lanes t60 = t11 * t52;
-    const lanes t61 = t31 * (-2.0);
-    const lanes t62 = t37 * t38 + (t12 * t60 + t31 * t42);
-    const lanes t63 = 0.5 * t30;
-    const lanes t64 = t38 * (-2.0);
-    const lanes t65 = t11 * t44 + (t12 * t45 + t10 * t43);
-    const lanes t66 = t51 * t65;
-    const lanes t67 = t47 * t65 + t14 * t66;
-    const lanes t68 = t10 * t66;
-    const lanes t69 = t31 * t43 + (t11 * t68 + t21 * t44);
-    const lanes t70 = 0.5 * t45;
-    const lanes t71 = t38 * t43 + (t12 * t68 + t21 * t45);
-    const lanes t72 = 0.5 * t44;
-    const lanes t73 = t11 * t66;
-    const lanes t74 = t38 * t44 + (t12 * t73 + t31 * t45);
-    const lanes t75 = 0.5 * t43;
     out[0] = t10;
     out[1] = t11;
     out[2] = t12;
@@ -172,87 +143,119 @@ static void block_jacobians(
     out[6] = t43;
     out[7] = t44;
     out[8] = t45;
-    out_D_x[0] = t26;
-    out_D_x[1] = t35;
-    out_D_x[2] = t40;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = t29;
-    out_D_x[10] = t36;
-    out_D_x[11] = t41;
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = t24;
-    out_D_x[19] = t34;
-    out_D_x[20] = t39;
-    out_D_x[21] = lanes_of(0.0);
-    out_D_x[22] = lanes_of(0.0);
-    out_D_x[23] = lanes_of(0.0);
-    out_D_x[24] = lanes_of(0.0);
-    out_D_x[25] = lanes_of(0.0);
-    out_D_x[26] = lanes_of(0.0);
-    out_D_x[27] = t10 * t55 - (t53 + t30 * t54);
-    out_D_x[28] = t56 - t57;
-    out_D_x[29] = t58 + t59;
-    out_D_x[30] = t26;
-    out_D_x[31] = t35;
-    out_D_x[32] = t40;
-    out_D_x[33] = lanes_of(0.0);
-    out_D_x[34] = lanes_of(0.0);
-    out_D_x[35] = lanes_of(0.0);
-    out_D_x[36] = t56 + t57;
-    out_D_x[37] = t11 * t60 - t53 - t37 * t61;
-    out_D_x[38] = t62 - t63;
-    out_D_x[39] = t29;
-    out_D_x[40] = t36;
-    out_D_x[41] = t41;
-    out_D_x[42] = lanes_of(0.0);
-    out_D_x[43] = lanes_of(0.0);
-    out_D_x[44] = lanes_of(0.0);
-    out_D_x[45] = t58 - t59;
-    out_D_x[46] = t62 + t63;
-    out_D_x[47] = t13 * t52 - t53 - t42 * t64;
-    out_D_x[48] = t24;
-    out_D_x[49] = t34;
-    out_D_x[50] = t39;
-    out_D_x[51] = lanes_of(0.0);
-    out_D_x[52] = lanes_of(0.0);
-    out_D_x[53] = lanes_of(0.0);
-    out_D_x[54] = t10 * t68 - (t67 + t43 * t54);
-    out_D_x[55] = t69 - t70;
-    out_D_x[56] = t71 + t72;
-    out_D_x[57] = lanes_of(0.0);
-    out_D_x[58] = lanes_of(0.0);
-    out_D_x[59] = lanes_of(0.0);
-    out_D_x[60] = t26;
-    out_D_x[61] = t35;
-    out_D_x[62] = t40;
-    out_D_x[63] = t69 + t70;
-    out_D_x[64] = t11 * t73 - t67 - t44 * t61;
-    out_D_x[65] = t74 - t75;
-    out_D_x[66] = lanes_of(0.0);
-    out_D_x[67] = lanes_of(0.0);
-    out_D_x[68] = lanes_of(0.0);
-    out_D_x[69] = t29;
-    out_D_x[70] = t36;
-    out_D_x[71] = t41;
-    out_D_x[72] = t71 - t72;
-    out_D_x[73] = t74 + t75;
-    out_D_x[74] = t13 * t66 - t67 - t45 * t64;
-    out_D_x[75] = lanes_of(0.0);
-    out_D_x[76] = lanes_of(0.0);
-    out_D_x[77] = lanes_of(0.0);
-    out_D_x[78] = t24;
-    out_D_x[79] = t34;
-    out_D_x[80] = t39;
+    if (want_out_D_x) {
+        const lanes t46 = t11 * t37 + (t12 * t42 + t10 * t30);
+        const lanes t47 = 2.0 * t20;
+        const lanes t48 = t14 * (t14 * 3.328472381969466e-08 - 0.002774415758409675);
+        const lanes t49 = t14 * (t14 * (t48 + 3.524948491346294) - 1618.3819503577756);
+        const lanes t50 = t14 * (t14 * (t49 + 330365.05572739476) - 30057589.92197956);
+        const lanes t51 = 0.002777777777777778 + (t50 + 989919839.2921487) * (t18 / t17);
+        const lanes t52 = t46 * t51;
+        const lanes t53 = t46 * t47 + t14 * t52;
+        const lanes t54 = t21 * (-2.0);
+        const lanes t55 = t10 * t52;
+        const lanes t56 = t11 * t55 + (t21 * t37 + t30 * t31);
+        const lanes t57 = 0.5 * t42;
+        const lanes t58 = t12 * t55 + (t21 * t42 + t30 * t38);
+        const lanes t59 = 0.5 * t37;
+        const lanes t60 = t31 * (-2.0);
+        const lanes t61 = t11 * t52;
+        const lanes t62 = t12 * t61 + (t31 * t42 + t37 * t38);
+        const lanes t63 = 0.5 * t30;
+        const lanes t64 = t38 * (-2.0);
+        const lanes t65 = t11 * t44 + (t12 * t45 + t10 * t43);
+        const lanes t66 = t51 * t65;
+        const lanes t67 = t47 * t65 + t14 * t66;
+        const lanes t68 = t10 * t66;
+        const lanes t69 = t11 * t68 + (t21 * t44 + t31 * t43);
+        const lanes t70 = 0.5 * t45;
+        const lanes t71 = t12 * t68 + (t21 * t45 + t38 * t43);
+        const lanes t72 = 0.5 * t44;
+        const lanes t73 = t11 * t66;
+        const lanes t74 = t12 * t73 + (t31 * t45 + t38 * t44);
+        const lanes t75 = 0.5 * t43;
+        out_D_x[0] = t26;
+        out_D_x[1] = t35;
+        out_D_x[2] = t40;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = t29;
+        out_D_x[10] = t36;
+        out_D_x[11] = t41;
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = t24;
+        out_D_x[19] = t34;
+        out_D_x[20] = t39;
+        out_D_x[21] = lanes_of(0.0);
+        out_D_x[22] = lanes_of(0.0);
+        out_D_x[23] = lanes_of(0.0);
+        out_D_x[24] = lanes_of(0.0);
+        out_D_x[25] = lanes_of(0.0);
+        out_D_x[26] = lanes_of(0.0);
+        out_D_x[27] = t10 * t55 - (t53 + t30 * t54);
+        out_D_x[28] = t56 - t57;
+        out_D_x[29] = t58 + t59;
+        out_D_x[30] = t26;
+        out_D_x[31] = t35;
+        out_D_x[32] = t40;
+        out_D_x[33] = lanes_of(0.0);
+        out_D_x[34] = lanes_of(0.0);
+        out_D_x[35] = lanes_of(0.0);
+        out_D_x[36] = t56 + t57;
+        out_D_x[37] = t11 * t61 - (t53 + t37 * t60);
+        out_D_x[38] = t62 - t63;
+        out_D_x[39] = t29;
+        out_D_x[40] = t36;
+        out_D_x[41] = t41;
+        out_D_x[42] = lanes_of(0.0);
+        out_D_x[43] = lanes_of(0.0);
+        out_D_x[44] = lanes_of(0.0);
+        out_D_x[45] = t58 - t59;
+        out_D_x[46] = t62 + t63;
+        out_D_x[47] = t13 * t52 - (t53 + t42 * t64);
+        out_D_x[48] = t24;
+        out_D_x[49] = t34;
+        out_D_x[50] = t39;
+        out_D_x[51] = lanes_of(0.0);
+        out_D_x[52] = lanes_of(0.0);
+        out_D_x[53] = lanes_of(0.0);
+        out_D_x[54] = t10 * t68 - (t67 + t43 * t54);
+        out_D_x[55] = t69 - t70;
+        out_D_x[56] = t71 + t72;
+        out_D_x[57] = lanes_of(0.0);
+        out_D_x[58] = lanes_of(0.0);
+        out_D_x[59] = lanes_of(0.0);
+        out_D_x[60] = t26;
+        out_D_x[61] = t35;
+        out_D_x[62] = t40;
+        out_D_x[63] = t69 + t70;
+        out_D_x[64] = t11 * t73 - (t67 + t44 * t60);
+        out_D_x[65] = t74 - t75;
+        out_D_x[66] = lanes_of(0.0);
+        out_D_x[67] = lanes_of(0.0);
+        out_D_x[68] = lanes_of(0.0);
+        out_D_x[69] = t29;
+        out_D_x[70] = t36;
+        out_D_x[71] = t41;
+        out_D_x[72] = t71 - t72;
+        out_D_x[73] = t74 + t75;
+        out_D_x[74] = t13 * t66 - (t67 + t45 * t64);
+        out_D_x[75] = lanes_of(0.0);
+        out_D_x[76] = lanes_of(0.0);
+        out_D_x[77] = lanes_of(0.0);
+        out_D_x[78] = t24;
+        out_D_x[79] = t34;
+        out_D_x[80] = t39;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -268,14 +271,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 81, n, k);
 }
 
-int liegen_groups_se23_log_batch(
+LANES_WHOLE int liegen_groups_se23_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 90 : 9);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -294,16 +298,14 @@ int liegen_groups_se23_log_batch(
             }
             liegen_groups_load(x, 10, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 9, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 81, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 81, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

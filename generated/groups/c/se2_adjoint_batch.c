@@ -40,7 +40,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 9, n, k);
 }
 
-int liegen_groups_se2_adjoint_batch(
+LANES_WHOLE int liegen_groups_se2_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,

@@ -18,24 +18,25 @@ static void block_value(
     const lanes d_y = d[1];
     const lanes d_z = d[2];
     lanes t0, t1; lanes_sincos(d_z, &t0, &t1);
-    const lanes t2 = 0.25 * (d_z * d_z);
+    const lanes t2 = d_z * (d_z * 0.25);
     const lanes_mask t3 = t2 < 8.673617379884035e-19;
     const lanes t4 = lanes_sqrt(lanes_select(t3, lanes_of(8.673617379884035e-19), t2));
     lanes t5, t6; lanes_sincos(t4, &t5, &t6);
     const lanes t7 = t5 / t4;
     const lanes t8 = t7 * t6;
-    const lanes t9 = 0.5 * (d_z * (t7 * t7));
+    const lanes t9 = t7 * (t7 * (d_z * 0.5));
     out[0] = t1;
     out[1] = t0;
     out[2] = d_x * t8 - d_y * t9;
-    out[3] = d_x * t9 + d_y * t8;
+    out[3] = d_x * t9 + t8 * d_y;
 }
 
 /* Value and Jacobians of a block. */
 static void block_jacobians(
     const lanes *d,
     lanes *out,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_d)
 {
     const lanes d_x = d[0];
     const lanes d_y = d[1];
@@ -48,27 +49,29 @@ static void block_jacobians(
     lanes t5, t6; lanes_sincos(t4, &t5, &t6);
     const lanes t7 = t5 / t4;
     const lanes t8 = t7 * t6;
-    const lanes t9 = t0 * (t0 * (-2.7073636682318957e-15) + 7.641712667683627e-13);
-    const lanes t10 = t0 * (t9 - 1.605889346154661e-10) + 2.5052106052920182e-08;
-    const lanes t11 = t0 * (t0 * t10 - 2.755731920385087e-06) + 0.0001984126984118024;
-    const lanes t12 = t0 * (t0 * t11 - 0.008333333333333161) + 0.16666666666666666;
     const lanes t13 = 0.5 * (t7 * t7);
-    const lanes t14 = d_z * lanes_select(t0 < 3.0, t12, (1.0 - t8) * (0.25 / t3));
     const lanes t15 = d_z * t13;
     lanes t16, t17; lanes_sincos(d_z, &t16, &t17);
     out[0] = t17;
     out[1] = t16;
     out[2] = d_x * t8 - d_y * t15;
     out[3] = d_x * t15 + d_y * t8;
-    out_D_d[0] = t8;
-    out_D_d[1] = t15;
-    out_D_d[2] = d_x * t14 - d_y * t13;
-    out_D_d[3] = -t15;
-    out_D_d[4] = t8;
-    out_D_d[5] = d_y * t14 + d_x * t13;
-    out_D_d[6] = lanes_of(0.0);
-    out_D_d[7] = lanes_of(0.0);
-    out_D_d[8] = lanes_of(1.0);
+    if (want_out_D_d) {
+        const lanes t9 = t0 * (t0 * (-2.7073636682318957e-15) + 7.641712667683627e-13);
+        const lanes t10 = t0 * (t9 - 1.605889346154661e-10) + 2.5052106052920182e-08;
+        const lanes t11 = t0 * (t0 * t10 - 2.755731920385087e-06) + 0.0001984126984118024;
+        const lanes t12 = t0 * (t0 * t11 - 0.008333333333333161) + 0.16666666666666666;
+        const lanes t14 = d_z * lanes_select(t0 < 3.0, t12, (1.0 - t8) * (0.25 / t3));
+        out_D_d[0] = t8;
+        out_D_d[1] = t15;
+        out_D_d[2] = d_x * t14 - d_y * t13;
+        out_D_d[3] = -t15;
+        out_D_d[4] = t8;
+        out_D_d[5] = d_y * t14 + d_x * t13;
+        out_D_d[6] = lanes_of(0.0);
+        out_D_d[7] = lanes_of(0.0);
+        out_D_d[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -84,14 +87,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 9, n, k);
 }
 
-int liegen_groups_se2_exp_batch(
+LANES_WHOLE int liegen_groups_se2_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_d.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 13 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -110,16 +114,14 @@ int liegen_groups_se2_exp_batch(
             }
             liegen_groups_load(d, 3, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
+                block_jacobians(d_lanes, out_lanes, out_D_d_lanes, want_out_D_d);
             }
             if (!jacobians) {
                 block_value(d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_d, 9, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_d) liegen_groups_store(out_D_d, 9, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_d_pen);

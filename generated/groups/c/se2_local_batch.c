@@ -46,7 +46,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -75,29 +77,33 @@ static void block_jacobians(
     const lanes t16 = 0.5 * t13;
     const lanes t17 = t13 * t14;
     const lanes t18 = t12 * (-0.5);
-    const lanes t19 = -t6;
     const lanes t20 = -t10;
     out[0] = t12;
     out[1] = t13;
     out[2] = t0;
-    out_D_x[0] = t19;
-    out_D_x[1] = t20;
-    out_D_x[2] = t16 - t15;
-    out_D_x[3] = t10;
-    out_D_x[4] = t19;
-    out_D_x[5] = t18 - t17;
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(-1.0);
-    out_D_y[0] = t6;
-    out_D_y[1] = t20;
-    out_D_y[2] = t15 + t16;
-    out_D_y[3] = t10;
-    out_D_y[4] = t6;
-    out_D_y[5] = t17 + t18;
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(0.0);
-    out_D_y[8] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t19 = -t6;
+        out_D_x[0] = t19;
+        out_D_x[1] = t20;
+        out_D_x[2] = t16 - t15;
+        out_D_x[3] = t10;
+        out_D_x[4] = t19;
+        out_D_x[5] = t18 - t17;
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(-1.0);
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = t6;
+        out_D_y[1] = t20;
+        out_D_y[2] = t15 + t16;
+        out_D_y[3] = t10;
+        out_D_y[4] = t6;
+        out_D_y[5] = t17 + t18;
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(0.0);
+        out_D_y[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -117,7 +123,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 9, n, k);
 }
 
-int liegen_groups_se2_local_batch(
+LANES_WHOLE int liegen_groups_se2_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -126,7 +132,9 @@ int liegen_groups_se2_local_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 21 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -149,17 +157,16 @@ int liegen_groups_se2_local_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(y, 4, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -35,7 +35,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -51,19 +52,21 @@ static void block_jacobians(
     const lanes t7 = t0 * 0.5;
     const lanes t8 = x_x * t6 + x_y * t7;
     const lanes t9 = x_y * t6 - x_x * t7;
-    const lanes t10 = t0 * t5;
     out[0] = t8;
     out[1] = t9;
     out[2] = t0;
-    out_D_x[0] = t6;
-    out_D_x[1] = -t7;
-    out_D_x[2] = t8 * t10 + 0.5 * t9;
-    out_D_x[3] = t7;
-    out_D_x[4] = t6;
-    out_D_x[5] = t9 * t10 + t8 * (-0.5);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t10 = t0 * t5;
+        out_D_x[0] = t6;
+        out_D_x[1] = -t7;
+        out_D_x[2] = t8 * t10 + 0.5 * t9;
+        out_D_x[3] = t7;
+        out_D_x[4] = t6;
+        out_D_x[5] = t9 * t10 + t8 * (-0.5);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -79,14 +82,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 9, n, k);
 }
 
-int liegen_groups_se2_log_batch(
+LANES_WHOLE int liegen_groups_se2_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 12 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -105,16 +109,14 @@ int liegen_groups_se2_log_batch(
             }
             liegen_groups_load(x, 4, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -44,7 +44,9 @@ static void block_jacobians(
     const lanes *d,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_x,
+    int want_out_D_d)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -61,12 +63,7 @@ static void block_jacobians(
     lanes t5, t6; lanes_sincos(t4, &t5, &t6);
     const lanes t7 = t5 / t4;
     const lanes t8 = t7 * t6;
-    const lanes t9 = t0 * (t0 * (-2.7073636682318957e-15) + 7.641712667683627e-13);
-    const lanes t10 = t0 * (t9 - 1.605889346154661e-10) + 2.5052106052920182e-08;
-    const lanes t11 = t0 * (t0 * t10 - 2.755731920385087e-06) + 0.0001984126984118024;
-    const lanes t12 = t0 * (t0 * t11 - 0.008333333333333161) + 0.16666666666666666;
     const lanes t13 = t7 * (t7 * 0.5);
-    const lanes t14 = d_z * lanes_select(t0 < 3.0, t12, (1.0 - t8) * (0.25 / t3));
     const lanes t15 = d_z * t13;
     const lanes t16 = d_x * t8 - d_y * t15;
     const lanes t17 = d_x * t15 + t8 * d_y;
@@ -75,24 +72,33 @@ static void block_jacobians(
     out[1] = t19 * x_s + x_c * t18;
     out[2] = x_x + x_c * t16 - x_s * t17;
     out[3] = x_c * t17 + (x_y + x_s * t16);
-    out_D_x[0] = t19;
-    out_D_x[1] = t18;
-    out_D_x[2] = t18 * t16 - t19 * t17;
-    out_D_x[3] = -t18;
-    out_D_x[4] = t19;
-    out_D_x[5] = t18 * t17 + t19 * t16;
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = lanes_of(1.0);
-    out_D_d[0] = t8;
-    out_D_d[1] = t15;
-    out_D_d[2] = d_x * t14 - d_y * t13;
-    out_D_d[3] = -t15;
-    out_D_d[4] = t8;
-    out_D_d[5] = d_y * t14 + d_x * t13;
-    out_D_d[6] = lanes_of(0.0);
-    out_D_d[7] = lanes_of(0.0);
-    out_D_d[8] = lanes_of(1.0);
+    if (want_out_D_x) {
+        out_D_x[0] = t19;
+        out_D_x[1] = t18;
+        out_D_x[2] = t18 * t16 - t19 * t17;
+        out_D_x[3] = -t18;
+        out_D_x[4] = t19;
+        out_D_x[5] = t18 * t17 + t19 * t16;
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = lanes_of(1.0);
+    }
+    if (want_out_D_d) {
+        const lanes t9 = t0 * (t0 * (-2.7073636682318957e-15) + 7.641712667683627e-13);
+        const lanes t10 = t0 * (t9 - 1.605889346154661e-10) + 2.5052106052920182e-08;
+        const lanes t11 = t0 * (t0 * t10 - 2.755731920385087e-06) + 0.0001984126984118024;
+        const lanes t12 = t0 * (t0 * t11 - 0.008333333333333161) + 0.16666666666666666;
+        const lanes t14 = d_z * lanes_select(t0 < 3.0, t12, (1.0 - t8) * (0.25 / t3));
+        out_D_d[0] = t8;
+        out_D_d[1] = t15;
+        out_D_d[2] = d_x * t14 - d_y * t13;
+        out_D_d[3] = -t15;
+        out_D_d[4] = t8;
+        out_D_d[5] = d_y * t14 + d_x * t13;
+        out_D_d[6] = lanes_of(0.0);
+        out_D_d[7] = lanes_of(0.0);
+        out_D_d[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -112,7 +118,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 9, n, k);
 }
 
-int liegen_groups_se2_retract_batch(
+LANES_WHOLE int liegen_groups_se2_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in d,
@@ -121,7 +127,9 @@ int liegen_groups_se2_retract_batch(
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_d.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 22 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -144,17 +152,16 @@ int liegen_groups_se2_retract_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(d, 3, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes);
+                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes, want_out_D_x,
+                    want_out_D_d);
             }
             if (!jacobians) {
                 block_value(x_lanes, d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_d, 9, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_d) liegen_groups_store(out_D_d, 9, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -33,7 +33,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -47,16 +49,20 @@ static void block_jacobians(
     const lanes t3 = x_c * t1 - x_s * t0;
     out[0] = t2;
     out[1] = t3;
-    out_D_x[0] = lanes_of(-1.0);
-    out_D_x[1] = lanes_of(0.0);
-    out_D_x[2] = t3;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(-1.0);
-    out_D_x[5] = -t2;
-    out_D_p[0] = x_c;
-    out_D_p[1] = x_s;
-    out_D_p[2] = -x_s;
-    out_D_p[3] = x_c;
+    if (want_out_D_x) {
+        out_D_x[0] = lanes_of(-1.0);
+        out_D_x[1] = lanes_of(0.0);
+        out_D_x[2] = t3;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(-1.0);
+        out_D_x[5] = -t2;
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = x_c;
+        out_D_p[1] = x_s;
+        out_D_p[2] = -x_s;
+        out_D_p[3] = x_c;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -76,7 +82,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 4, n, k);
 }
 
-int liegen_groups_se2_transform_to_batch(
+LANES_WHOLE int liegen_groups_se2_transform_to_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -85,7 +91,9 @@ int liegen_groups_se2_transform_to_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 12 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -108,17 +116,16 @@ int liegen_groups_se2_transform_to_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(p, 2, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 6, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 4, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 6, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 4, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

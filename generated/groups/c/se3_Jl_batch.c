@@ -28,48 +28,48 @@ static void block_value(
     const lanes t5 = lanes_sqrt(t4);
     lanes t6, t7; lanes_sincos(t5, &t6, &t7);
     const lanes t8 = t6 / t5;
-    const lanes t9 = t8 * (t8 * 0.5);
-    const lanes t10 = t8 * t7;
-    const lanes t11 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
-    const lanes t12 = t1 * (t11 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
-    const lanes t13 = t1 * (t1 * t12 + 2.0876755542005065e-09) - 2.755731919615483e-07;
-    const lanes t14 = t1 * (t1 * t13 + 2.4801587301323603e-05) - 0.0013888888888887987;
-    const lanes t15 = 0.25 / t4;
-    const lanes t16 = t1 * t14 + 0.041666666666666664;
-    const lanes_mask t17 = t1 < 10.0;
-    const lanes t18 = lanes_select(t17, t16, t15 * (0.5 - t9));
-    const lanes t19 = t15 * (t15 * (t10 + 0.16666666666666666 * (t1 - 6.0)));
+    const lanes t9 = t8 * t7;
+    const lanes t10 = t8 * (t8 * 0.5);
+    const lanes t11 = 0.25 / t4;
+    const lanes t12 = (t9 + 0.16666666666666666 * (t1 - 6.0)) * (t11 * t11);
+    const lanes t13 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
+    const lanes t14 = t1 * (t13 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
+    const lanes t15 = t1 * (t1 * t14 + 2.0876755542005065e-09) - 2.755731919615483e-07;
+    const lanes t16 = t1 * (t1 * t15 + 2.4801587301323603e-05) - 0.0013888888888887987;
+    const lanes t17 = t1 * t16 + 0.041666666666666664;
+    const lanes_mask t18 = t1 < 10.0;
+    const lanes t19 = lanes_select(t18, t17, t11 * (0.5 - t10));
     const lanes t20 = t1 * (t1 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t21 = t1 * (t1 * (t20 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t22 = t1 * (t1 * (t21 + 1.605904321180956e-10) - 2.505210837344028e-08);
     const lanes t23 = t1 * (t1 * (t22 + 2.755731922387232e-06) - 0.0001984126984126945);
     const lanes t24 = t23 + 0.008333333333333333;
     const lanes t25 = 0.16666666666666666 - t1 * t24;
-    const lanes t26 = lanes_select(t17, t25, (1.0 - t10) * t15);
+    const lanes t26 = lanes_select(t18, t25, (1.0 - t9) * t11);
     const lanes t27 = d_v2 * d_v5 + (d_v0 * d_v3 + d_v1 * d_v4);
-    const lanes t28 = t27 * (3.0 * lanes_select(t17, t24, t19) - t18);
+    const lanes t28 = t27 * (3.0 * lanes_select(t18, t24, t12) - t19);
     const lanes t29 = 2.0 * (t26 * t27) + t1 * t28;
     const lanes t30 = d_v2 * t26;
-    const lanes t31 = t27 * (t26 + t18 * (-2.0));
+    const lanes t31 = t27 * (t26 + t19 * (-2.0));
     const lanes t32 = d_v1 * t26;
-    const lanes t33 = t9 * d_v3 - d_v0 * t31;
+    const lanes t33 = t10 * d_v3 - d_v0 * t31;
     const lanes t34 = d_v1 * t28;
     const lanes t35 = d_v2 * t34 + (t32 * d_v5 + t30 * d_v4);
     const lanes t36 = d_v0 * t26;
-    const lanes t37 = t9 * d_v4 - d_v1 * t31;
+    const lanes t37 = t10 * d_v4 - d_v1 * t31;
     const lanes t38 = d_v0 * t28;
     const lanes t39 = d_v2 * t38 + (t36 * d_v5 + t30 * d_v3);
-    const lanes t40 = t9 * d_v5 - d_v2 * t31;
+    const lanes t40 = t10 * d_v5 - d_v2 * t31;
     const lanes t41 = d_v1 * t38 + (t36 * d_v4 + t32 * d_v3);
-    const lanes t42 = d_v0 * t9;
+    const lanes t42 = d_v0 * t10;
     const lanes t43 = d_v2 * t32;
     const lanes t44 = t43 + t42;
     const lanes t45 = t43 - t42;
-    const lanes t46 = d_v1 * t9;
+    const lanes t46 = d_v1 * t10;
     const lanes t47 = d_v2 * t36;
     const lanes t48 = t47 - t46;
     const lanes t49 = t47 + t46;
-    const lanes t50 = d_v2 * t9;
+    const lanes t50 = d_v2 * t10;
     const lanes t51 = d_v1 * t36;
     const lanes t52 = t51 + t50;
     const lanes t53 = t51 - t50;
@@ -95,7 +95,7 @@ static void block_value(
     out[15] = lanes_of(0.0);
     out[16] = lanes_of(0.0);
     out[17] = lanes_of(0.0);
-    out[18] = d_v0 * t38 + (2.0 * (t36 * d_v3) - t29);
+    out[18] = d_v0 * t38 + (t36 * (2.0 * d_v3) - t29);
     out[19] = t41 - t40;
     out[20] = t39 + t37;
     out[21] = t57;
@@ -126,7 +126,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 36, n, k);
 }
 
-int liegen_groups_se3_Jl_batch(
+LANES_WHOLE int liegen_groups_se3_Jl_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

@@ -87,7 +87,7 @@ static void block_value(
     out[15] = lanes_of(0.0);
     out[16] = lanes_of(0.0);
     out[17] = lanes_of(0.0);
-    out[18] = d_v0 * t29 + (2.0 * (t28 * d_v3) - t22);
+    out[18] = d_v0 * t29 + (t28 * (2.0 * d_v3) - t22);
     out[19] = t32 - t33;
     out[20] = t30 + t31;
     out[21] = t49;
@@ -118,7 +118,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 36, n, k);
 }
 
-int liegen_groups_se3_Jr_inv_batch(
+LANES_WHOLE int liegen_groups_se3_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

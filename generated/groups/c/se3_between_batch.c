@@ -50,7 +50,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -79,27 +81,6 @@ static void block_jacobians(
     const lanes t10 = t4 + x_qw * t7 + (x_qz * t8 - x_qy * t9);
     const lanes t11 = t5 + x_qw * t8 + (x_qx * t9 - x_qz * t7);
     const lanes t12 = t6 + x_qw * t9 + (x_qy * t7 - x_qx * t8);
-    const lanes t13 = t1 * (-2.0);
-    const lanes t14 = t1 * t13;
-    const lanes t15 = t2 * (-2.0);
-    const lanes t16 = t2 * t15;
-    const lanes t17 = -1.0 - (t14 + t16);
-    const lanes t18 = t0 * t13;
-    const lanes t19 = t3 * t15;
-    const lanes t20 = t18 + t19;
-    const lanes t21 = t0 * t15;
-    const lanes t22 = t3 * t13;
-    const lanes t23 = t21 - t22;
-    const lanes t24 = t18 - t19;
-    const lanes t25 = t0 * (-2.0);
-    const lanes t26 = t0 * t25;
-    const lanes t27 = -1.0 - (t16 + t26);
-    const lanes t28 = t1 * t15;
-    const lanes t29 = t3 * t25;
-    const lanes t30 = t28 + t29;
-    const lanes t31 = t21 + t22;
-    const lanes t32 = t28 - t29;
-    const lanes t33 = -1.0 - (t14 + t26);
     out[0] = t0;
     out[1] = t1;
     out[2] = t2;
@@ -107,78 +88,103 @@ static void block_jacobians(
     out[4] = t10;
     out[5] = t11;
     out[6] = t12;
-    out_D_x[0] = t17;
-    out_D_x[1] = t20;
-    out_D_x[2] = t23;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t24;
-    out_D_x[7] = t27;
-    out_D_x[8] = t30;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t31;
-    out_D_x[13] = t32;
-    out_D_x[14] = t33;
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = t11 * t23 - t12 * t20;
-    out_D_x[19] = t12 * t17 - t10 * t23;
-    out_D_x[20] = t10 * t20 - t11 * t17;
-    out_D_x[21] = t17;
-    out_D_x[22] = t20;
-    out_D_x[23] = t23;
-    out_D_x[24] = t11 * t30 - t12 * t27;
-    out_D_x[25] = t12 * t24 - t10 * t30;
-    out_D_x[26] = t10 * t27 - t11 * t24;
-    out_D_x[27] = t24;
-    out_D_x[28] = t27;
-    out_D_x[29] = t30;
-    out_D_x[30] = t11 * t33 - t12 * t32;
-    out_D_x[31] = t12 * t31 - t10 * t33;
-    out_D_x[32] = t10 * t32 - t11 * t31;
-    out_D_x[33] = t31;
-    out_D_x[34] = t32;
-    out_D_x[35] = t33;
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(1.0);
-    out_D_y[8] = lanes_of(0.0);
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(0.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = lanes_of(1.0);
-    out_D_y[15] = lanes_of(0.0);
-    out_D_y[16] = lanes_of(0.0);
-    out_D_y[17] = lanes_of(0.0);
-    out_D_y[18] = lanes_of(0.0);
-    out_D_y[19] = lanes_of(0.0);
-    out_D_y[20] = lanes_of(0.0);
-    out_D_y[21] = lanes_of(1.0);
-    out_D_y[22] = lanes_of(0.0);
-    out_D_y[23] = lanes_of(0.0);
-    out_D_y[24] = lanes_of(0.0);
-    out_D_y[25] = lanes_of(0.0);
-    out_D_y[26] = lanes_of(0.0);
-    out_D_y[27] = lanes_of(0.0);
-    out_D_y[28] = lanes_of(1.0);
-    out_D_y[29] = lanes_of(0.0);
-    out_D_y[30] = lanes_of(0.0);
-    out_D_y[31] = lanes_of(0.0);
-    out_D_y[32] = lanes_of(0.0);
-    out_D_y[33] = lanes_of(0.0);
-    out_D_y[34] = lanes_of(0.0);
-    out_D_y[35] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t13 = t1 * (-2.0);
+        const lanes t14 = t1 * t13;
+        const lanes t15 = t2 * (-2.0);
+        const lanes t16 = t2 * t15;
+        const lanes t17 = -1.0 - (t14 + t16);
+        const lanes t18 = t0 * t13;
+        const lanes t19 = t3 * t15;
+        const lanes t20 = t18 + t19;
+        const lanes t21 = t0 * t15;
+        const lanes t22 = t3 * t13;
+        const lanes t23 = t21 - t22;
+        const lanes t24 = t18 - t19;
+        const lanes t25 = t0 * (-2.0);
+        const lanes t26 = t0 * t25;
+        const lanes t27 = -1.0 - (t16 + t26);
+        const lanes t28 = t1 * t15;
+        const lanes t29 = t3 * t25;
+        const lanes t30 = t28 + t29;
+        const lanes t31 = t21 + t22;
+        const lanes t32 = t28 - t29;
+        const lanes t33 = -1.0 - (t14 + t26);
+        out_D_x[0] = t17;
+        out_D_x[1] = t20;
+        out_D_x[2] = t23;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t24;
+        out_D_x[7] = t27;
+        out_D_x[8] = t30;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t31;
+        out_D_x[13] = t32;
+        out_D_x[14] = t33;
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = t11 * t23 - t12 * t20;
+        out_D_x[19] = t12 * t17 - t10 * t23;
+        out_D_x[20] = t10 * t20 - t11 * t17;
+        out_D_x[21] = t17;
+        out_D_x[22] = t20;
+        out_D_x[23] = t23;
+        out_D_x[24] = t11 * t30 - t12 * t27;
+        out_D_x[25] = t12 * t24 - t10 * t30;
+        out_D_x[26] = t10 * t27 - t11 * t24;
+        out_D_x[27] = t24;
+        out_D_x[28] = t27;
+        out_D_x[29] = t30;
+        out_D_x[30] = t11 * t33 - t12 * t32;
+        out_D_x[31] = t12 * t31 - t10 * t33;
+        out_D_x[32] = t10 * t32 - t11 * t31;
+        out_D_x[33] = t31;
+        out_D_x[34] = t32;
+        out_D_x[35] = t33;
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(1.0);
+        out_D_y[8] = lanes_of(0.0);
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(0.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = lanes_of(1.0);
+        out_D_y[15] = lanes_of(0.0);
+        out_D_y[16] = lanes_of(0.0);
+        out_D_y[17] = lanes_of(0.0);
+        out_D_y[18] = lanes_of(0.0);
+        out_D_y[19] = lanes_of(0.0);
+        out_D_y[20] = lanes_of(0.0);
+        out_D_y[21] = lanes_of(1.0);
+        out_D_y[22] = lanes_of(0.0);
+        out_D_y[23] = lanes_of(0.0);
+        out_D_y[24] = lanes_of(0.0);
+        out_D_y[25] = lanes_of(0.0);
+        out_D_y[26] = lanes_of(0.0);
+        out_D_y[27] = lanes_of(0.0);
+        out_D_y[28] = lanes_of(1.0);
+        out_D_y[29] = lanes_of(0.0);
+        out_D_y[30] = lanes_of(0.0);
+        out_D_y[31] = lanes_of(0.0);
+        out_D_y[32] = lanes_of(0.0);
+        out_D_y[33] = lanes_of(0.0);
+        out_D_y[34] = lanes_of(0.0);
+        out_D_y[35] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -198,7 +204,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 36, n, k);
 }
 
-int liegen_groups_se3_between_batch(
+LANES_WHOLE int liegen_groups_se3_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -207,7 +213,9 @@ int liegen_groups_se3_between_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 79 : 7);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -230,17 +238,16 @@ int liegen_groups_se3_between_batch(
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(y, 7, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 7, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 36, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 36, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

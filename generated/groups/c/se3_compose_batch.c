@@ -47,7 +47,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -66,27 +68,6 @@ static void block_jacobians(
     const lanes t0 = (x_qy * y_z - x_qz * y_y) * 2.0;
     const lanes t1 = 2.0 * (x_qx * y_y - x_qy * y_x);
     const lanes t2 = 2.0 * (x_qz * y_x - x_qx * y_z);
-    const lanes t3 = y_qy * 2.0;
-    const lanes t4 = 1.0 - y_qy * t3;
-    const lanes t5 = y_qz * 2.0;
-    const lanes t6 = y_qz * t5;
-    const lanes t7 = t4 - t6;
-    const lanes t8 = y_qx * t3;
-    const lanes t9 = y_qw * t5;
-    const lanes t10 = t8 + t9;
-    const lanes t11 = y_qx * t5;
-    const lanes t12 = y_qw * t3;
-    const lanes t13 = t11 - t12;
-    const lanes t14 = t8 - t9;
-    const lanes t15 = y_qx * 2.0;
-    const lanes t16 = y_qx * t15;
-    const lanes t17 = 1.0 - t6 - t16;
-    const lanes t18 = y_qy * t5;
-    const lanes t19 = y_qw * t15;
-    const lanes t20 = t18 + t19;
-    const lanes t21 = t11 + t12;
-    const lanes t22 = t18 - t19;
-    const lanes t23 = t4 - t16;
     out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
     out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
     out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
@@ -94,78 +75,103 @@ static void block_jacobians(
     out[4] = x_qy * t1 + (x_qw * t0 + (x_x + y_x)) - x_qz * t2;
     out[5] = x_qz * t0 + (x_qw * t2 + (y_y + x_y)) - x_qx * t1;
     out[6] = x_qx * t2 + (x_qw * t1 + (y_z + x_z)) - x_qy * t0;
-    out_D_x[0] = t7;
-    out_D_x[1] = t10;
-    out_D_x[2] = t13;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t14;
-    out_D_x[7] = t17;
-    out_D_x[8] = t20;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t21;
-    out_D_x[13] = t22;
-    out_D_x[14] = t23;
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = y_y * t13 - y_z * t10;
-    out_D_x[19] = y_z * t7 - y_x * t13;
-    out_D_x[20] = y_x * t10 - y_y * t7;
-    out_D_x[21] = t7;
-    out_D_x[22] = t10;
-    out_D_x[23] = t13;
-    out_D_x[24] = y_y * t20 - y_z * t17;
-    out_D_x[25] = y_z * t14 - y_x * t20;
-    out_D_x[26] = y_x * t17 - y_y * t14;
-    out_D_x[27] = t14;
-    out_D_x[28] = t17;
-    out_D_x[29] = t20;
-    out_D_x[30] = y_y * t23 - y_z * t22;
-    out_D_x[31] = y_z * t21 - y_x * t23;
-    out_D_x[32] = y_x * t22 - y_y * t21;
-    out_D_x[33] = t21;
-    out_D_x[34] = t22;
-    out_D_x[35] = t23;
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(1.0);
-    out_D_y[8] = lanes_of(0.0);
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(0.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = lanes_of(1.0);
-    out_D_y[15] = lanes_of(0.0);
-    out_D_y[16] = lanes_of(0.0);
-    out_D_y[17] = lanes_of(0.0);
-    out_D_y[18] = lanes_of(0.0);
-    out_D_y[19] = lanes_of(0.0);
-    out_D_y[20] = lanes_of(0.0);
-    out_D_y[21] = lanes_of(1.0);
-    out_D_y[22] = lanes_of(0.0);
-    out_D_y[23] = lanes_of(0.0);
-    out_D_y[24] = lanes_of(0.0);
-    out_D_y[25] = lanes_of(0.0);
-    out_D_y[26] = lanes_of(0.0);
-    out_D_y[27] = lanes_of(0.0);
-    out_D_y[28] = lanes_of(1.0);
-    out_D_y[29] = lanes_of(0.0);
-    out_D_y[30] = lanes_of(0.0);
-    out_D_y[31] = lanes_of(0.0);
-    out_D_y[32] = lanes_of(0.0);
-    out_D_y[33] = lanes_of(0.0);
-    out_D_y[34] = lanes_of(0.0);
-    out_D_y[35] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t3 = y_qy * 2.0;
+        const lanes t4 = 1.0 - y_qy * t3;
+        const lanes t5 = y_qz * 2.0;
+        const lanes t6 = y_qz * t5;
+        const lanes t7 = t4 - t6;
+        const lanes t8 = y_qx * t3;
+        const lanes t9 = y_qw * t5;
+        const lanes t10 = t8 + t9;
+        const lanes t11 = y_qx * t5;
+        const lanes t12 = y_qw * t3;
+        const lanes t13 = t11 - t12;
+        const lanes t14 = t8 - t9;
+        const lanes t15 = y_qx * 2.0;
+        const lanes t16 = y_qx * t15;
+        const lanes t17 = 1.0 - t6 - t16;
+        const lanes t18 = y_qy * t5;
+        const lanes t19 = y_qw * t15;
+        const lanes t20 = t18 + t19;
+        const lanes t21 = t11 + t12;
+        const lanes t22 = t18 - t19;
+        const lanes t23 = t4 - t16;
+        out_D_x[0] = t7;
+        out_D_x[1] = t10;
+        out_D_x[2] = t13;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t14;
+        out_D_x[7] = t17;
+        out_D_x[8] = t20;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t21;
+        out_D_x[13] = t22;
+        out_D_x[14] = t23;
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = y_y * t13 - y_z * t10;
+        out_D_x[19] = y_z * t7 - y_x * t13;
+        out_D_x[20] = y_x * t10 - y_y * t7;
+        out_D_x[21] = t7;
+        out_D_x[22] = t10;
+        out_D_x[23] = t13;
+        out_D_x[24] = y_y * t20 - y_z * t17;
+        out_D_x[25] = y_z * t14 - y_x * t20;
+        out_D_x[26] = y_x * t17 - y_y * t14;
+        out_D_x[27] = t14;
+        out_D_x[28] = t17;
+        out_D_x[29] = t20;
+        out_D_x[30] = y_y * t23 - y_z * t22;
+        out_D_x[31] = y_z * t21 - y_x * t23;
+        out_D_x[32] = y_x * t22 - y_y * t21;
+        out_D_x[33] = t21;
+        out_D_x[34] = t22;
+        out_D_x[35] = t23;
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(1.0);
+        out_D_y[8] = lanes_of(0.0);
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(0.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = lanes_of(1.0);
+        out_D_y[15] = lanes_of(0.0);
+        out_D_y[16] = lanes_of(0.0);
+        out_D_y[17] = lanes_of(0.0);
+        out_D_y[18] = lanes_of(0.0);
+        out_D_y[19] = lanes_of(0.0);
+        out_D_y[20] = lanes_of(0.0);
+        out_D_y[21] = lanes_of(1.0);
+        out_D_y[22] = lanes_of(0.0);
+        out_D_y[23] = lanes_of(0.0);
+        out_D_y[24] = lanes_of(0.0);
+        out_D_y[25] = lanes_of(0.0);
+        out_D_y[26] = lanes_of(0.0);
+        out_D_y[27] = lanes_of(0.0);
+        out_D_y[28] = lanes_of(1.0);
+        out_D_y[29] = lanes_of(0.0);
+        out_D_y[30] = lanes_of(0.0);
+        out_D_y[31] = lanes_of(0.0);
+        out_D_y[32] = lanes_of(0.0);
+        out_D_y[33] = lanes_of(0.0);
+        out_D_y[34] = lanes_of(0.0);
+        out_D_y[35] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -185,7 +191,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 36, n, k);
 }
 
-int liegen_groups_se3_compose_batch(
+LANES_WHOLE int liegen_groups_se3_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -194,7 +200,9 @@ int liegen_groups_se3_compose_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 79 : 7);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -217,17 +225,16 @@ int liegen_groups_se3_compose_batch(
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(y, 7, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 7, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 36, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 36, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

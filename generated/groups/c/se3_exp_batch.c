@@ -60,7 +60,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *d,
     lanes *out,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_d)
 {
     const lanes d_v0 = d[0];
     const lanes d_v1 = d[1];
@@ -78,16 +79,9 @@ static void block_jacobians(
     const lanes t8 = t6 / t5;
     const lanes t9 = t8 * t7;
     const lanes t10 = 0.25 / t4;
-    const lanes t11 = (t9 + 0.16666666666666666 * (t1 - 6.0)) * (t10 * t10);
-    const lanes t12 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
-    const lanes t13 = t1 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
-    const lanes t14 = t1 * (t1 * t13 + 2.0876755542005065e-09) - 2.755731919615483e-07;
-    const lanes t15 = t1 * (t1 * t14 + 2.4801587301323603e-05) - 0.0013888888888887987;
     const lanes t16 = 0.5 * t8;
     const lanes t17 = t8 * t16;
-    const lanes t18 = t1 * t15 + 0.041666666666666664;
     const lanes_mask t19 = t1 < 10.0;
-    const lanes t20 = lanes_select(t19, t18, t10 * (0.5 - t17));
     const lanes t21 = t1 * (t1 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t22 = t1 * (t1 * (t21 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t23 = t1 * (t1 * (t22 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -95,35 +89,23 @@ static void block_jacobians(
     const lanes t25 = t24 + 0.008333333333333333;
     const lanes t26 = 0.16666666666666666 - t1 * t25;
     const lanes t27 = lanes_select(t19, t26, (1.0 - t9) * t10);
-    const lanes t28 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
-    const lanes t29 = t28 * (3.0 * lanes_select(t19, t25, t11) - t20);
-    const lanes t30 = 2.0 * (t27 * t28) + t1 * t29;
     const lanes t31 = d_v2 * t27;
-    const lanes t32 = t28 * (t27 + t20 * (-2.0));
     const lanes t33 = d_v1 * t27;
-    const lanes t34 = d_v1 * t29;
-    const lanes t35 = d_v0 * t32 - t17 * d_v3;
-    const lanes t36 = d_v4 * t31 + (d_v2 * t34 + d_v5 * t33);
-    const lanes t37 = d_v0 * t29;
-    const lanes t38 = d_v0 * t27;
-    const lanes t39 = d_v1 * t32 - t17 * d_v4;
-    const lanes t40 = d_v3 * t31 + (d_v2 * t37 + d_v5 * t38);
-    const lanes t41 = d_v2 * t32 - d_v5 * t17;
-    const lanes t42 = d_v3 * t33 + (d_v1 * t37 + t38 * d_v4);
+    const lanes t37 = d_v0 * t27;
     const lanes t43 = 1.0 - t1 * t27;
     const lanes t44 = t43 + d_v2 * t31;
     const lanes t45 = d_v1 * t17;
-    const lanes t46 = d_v2 * t38;
+    const lanes t46 = d_v2 * t37;
     const lanes t47 = t46 - t45;
     const lanes t48 = d_v0 * t17;
     const lanes t49 = d_v2 * t33;
     const lanes t50 = t49 + t48;
     const lanes t51 = t49 - t48;
     const lanes t52 = d_v2 * t17;
-    const lanes t53 = d_v1 * t38;
+    const lanes t53 = d_v1 * t37;
     const lanes t54 = t53 + t52;
     const lanes t55 = t43 + d_v1 * t33;
-    const lanes t56 = t43 + d_v0 * t38;
+    const lanes t56 = t43 + d_v0 * t37;
     const lanes t57 = t46 + t45;
     const lanes t58 = t53 - t52;
     out[0] = d_v0 * t16;
@@ -133,42 +115,63 @@ static void block_jacobians(
     out[4] = d_v4 * t58 + (d_v5 * t57 + d_v3 * t56);
     out[5] = d_v4 * t55 + (d_v5 * t51 + d_v3 * t54);
     out[6] = d_v4 * t50 + (d_v5 * t44 + d_v3 * t47);
-    out_D_d[0] = t56;
-    out_D_d[1] = t54;
-    out_D_d[2] = t47;
-    out_D_d[3] = lanes_of(0.0);
-    out_D_d[4] = lanes_of(0.0);
-    out_D_d[5] = lanes_of(0.0);
-    out_D_d[6] = t58;
-    out_D_d[7] = t55;
-    out_D_d[8] = t50;
-    out_D_d[9] = lanes_of(0.0);
-    out_D_d[10] = lanes_of(0.0);
-    out_D_d[11] = lanes_of(0.0);
-    out_D_d[12] = t57;
-    out_D_d[13] = t51;
-    out_D_d[14] = t44;
-    out_D_d[15] = lanes_of(0.0);
-    out_D_d[16] = lanes_of(0.0);
-    out_D_d[17] = lanes_of(0.0);
-    out_D_d[18] = d_v0 * t37 + (t38 * (d_v3 * 2.0) - t30);
-    out_D_d[19] = t42 - t41;
-    out_D_d[20] = t40 + t39;
-    out_D_d[21] = t56;
-    out_D_d[22] = t54;
-    out_D_d[23] = t47;
-    out_D_d[24] = t42 + t41;
-    out_D_d[25] = t33 * (d_v4 * 2.0) + (d_v1 * t34 - t30);
-    out_D_d[26] = t36 - t35;
-    out_D_d[27] = t58;
-    out_D_d[28] = t55;
-    out_D_d[29] = t50;
-    out_D_d[30] = t40 - t39;
-    out_D_d[31] = t36 + t35;
-    out_D_d[32] = t31 * (d_v5 * 2.0) + (t0 * t29 - t30);
-    out_D_d[33] = t57;
-    out_D_d[34] = t51;
-    out_D_d[35] = t44;
+    if (want_out_D_d) {
+        const lanes t11 = (t9 + 0.16666666666666666 * (t1 - 6.0)) * (t10 * t10);
+        const lanes t12 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
+        const lanes t13 = t1 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
+        const lanes t14 = t1 * (t1 * t13 + 2.0876755542005065e-09) - 2.755731919615483e-07;
+        const lanes t15 = t1 * (t1 * t14 + 2.4801587301323603e-05) - 0.0013888888888887987;
+        const lanes t18 = t1 * t15 + 0.041666666666666664;
+        const lanes t20 = lanes_select(t19, t18, t10 * (0.5 - t17));
+        const lanes t28 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
+        const lanes t29 = t28 * (3.0 * lanes_select(t19, t25, t11) - t20);
+        const lanes t30 = 2.0 * (t27 * t28) + t1 * t29;
+        const lanes t32 = t28 * (t27 + t20 * (-2.0));
+        const lanes t34 = d_v0 * t32 - t17 * d_v3;
+        const lanes t35 = d_v1 * t29;
+        const lanes t36 = d_v2 * t35 + (d_v5 * t33 + d_v4 * t31);
+        const lanes t38 = d_v1 * t32 - t17 * d_v4;
+        const lanes t39 = d_v0 * t29;
+        const lanes t40 = d_v2 * t39 + (d_v5 * t37 + d_v3 * t31);
+        const lanes t41 = d_v2 * t32 - d_v5 * t17;
+        const lanes t42 = d_v1 * t39 + (t37 * d_v4 + d_v3 * t33);
+        out_D_d[0] = t56;
+        out_D_d[1] = t54;
+        out_D_d[2] = t47;
+        out_D_d[3] = lanes_of(0.0);
+        out_D_d[4] = lanes_of(0.0);
+        out_D_d[5] = lanes_of(0.0);
+        out_D_d[6] = t58;
+        out_D_d[7] = t55;
+        out_D_d[8] = t50;
+        out_D_d[9] = lanes_of(0.0);
+        out_D_d[10] = lanes_of(0.0);
+        out_D_d[11] = lanes_of(0.0);
+        out_D_d[12] = t57;
+        out_D_d[13] = t51;
+        out_D_d[14] = t44;
+        out_D_d[15] = lanes_of(0.0);
+        out_D_d[16] = lanes_of(0.0);
+        out_D_d[17] = lanes_of(0.0);
+        out_D_d[18] = d_v0 * t39 + (t37 * (d_v3 * 2.0) - t30);
+        out_D_d[19] = t42 - t41;
+        out_D_d[20] = t40 + t38;
+        out_D_d[21] = t56;
+        out_D_d[22] = t54;
+        out_D_d[23] = t47;
+        out_D_d[24] = t42 + t41;
+        out_D_d[25] = d_v1 * t35 + (t33 * (d_v4 * 2.0) - t30);
+        out_D_d[26] = t36 - t34;
+        out_D_d[27] = t58;
+        out_D_d[28] = t55;
+        out_D_d[29] = t50;
+        out_D_d[30] = t40 - t38;
+        out_D_d[31] = t36 + t34;
+        out_D_d[32] = t0 * t29 + (t31 * (d_v5 * 2.0) - t30);
+        out_D_d[33] = t57;
+        out_D_d[34] = t51;
+        out_D_d[35] = t44;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -184,14 +187,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 36, n, k);
 }
 
-int liegen_groups_se3_exp_batch(
+LANES_WHOLE int liegen_groups_se3_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_d.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 43 : 7);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -210,16 +214,14 @@ int liegen_groups_se3_exp_batch(
             }
             liegen_groups_load(d, 6, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
+                block_jacobians(d_lanes, out_lanes, out_D_d_lanes, want_out_D_d);
             }
             if (!jacobians) {
                 block_value(d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 7, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_d, 36, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_d) liegen_groups_store(out_D_d, 36, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_d_pen);

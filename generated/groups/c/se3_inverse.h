@@ -52,7 +52,7 @@ int liegen_groups_se3_inverse(
     double *out,
     double *out_D_x);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_se3_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,

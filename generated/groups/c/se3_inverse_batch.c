@@ -37,7 +37,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -49,27 +50,6 @@ static void block_jacobians(
     const lanes t0 = (x_qz * x_y - x_qy * x_z) * 2.0;
     const lanes t1 = 2.0 * (x_qx * x_z - x_qz * x_x);
     const lanes t2 = 2.0 * (x_qy * x_x - x_qx * x_y);
-    const lanes t3 = x_qy * (-2.0);
-    const lanes t4 = -1.0 - x_qy * t3;
-    const lanes t5 = x_qz * (-2.0);
-    const lanes t6 = x_qz * t5;
-    const lanes t7 = t4 - t6;
-    const lanes t8 = x_qx * t3;
-    const lanes t9 = x_qw * t5;
-    const lanes t10 = t8 - t9;
-    const lanes t11 = x_qx * t5;
-    const lanes t12 = x_qw * t3;
-    const lanes t13 = t11 + t12;
-    const lanes t14 = t8 + t9;
-    const lanes t15 = x_qx * (-2.0);
-    const lanes t16 = x_qx * t15;
-    const lanes t17 = -1.0 - t6 - t16;
-    const lanes t18 = x_qy * t5;
-    const lanes t19 = x_qw * t15;
-    const lanes t20 = t18 - t19;
-    const lanes t21 = t11 - t12;
-    const lanes t22 = t18 + t19;
-    const lanes t23 = t4 - t16;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
@@ -77,42 +57,65 @@ static void block_jacobians(
     out[4] = x_qy * t2 - (x_qz * t1 + (x_x + x_qw * t0));
     out[5] = x_qz * t0 - (x_qx * t2 + (x_y + x_qw * t1));
     out[6] = x_qx * t1 - (x_qy * t0 + (x_z + x_qw * t2));
-    out_D_x[0] = t7;
-    out_D_x[1] = t10;
-    out_D_x[2] = t13;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t14;
-    out_D_x[7] = t17;
-    out_D_x[8] = t20;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t21;
-    out_D_x[13] = t22;
-    out_D_x[14] = t23;
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = x_y * t21 - x_z * t14;
-    out_D_x[19] = x_y * t22 - x_z * t17;
-    out_D_x[20] = x_y * t23 - x_z * t20;
-    out_D_x[21] = t7;
-    out_D_x[22] = t10;
-    out_D_x[23] = t13;
-    out_D_x[24] = x_z * t7 - x_x * t21;
-    out_D_x[25] = x_z * t10 - x_x * t22;
-    out_D_x[26] = x_z * t13 - x_x * t23;
-    out_D_x[27] = t14;
-    out_D_x[28] = t17;
-    out_D_x[29] = t20;
-    out_D_x[30] = x_x * t14 - x_y * t7;
-    out_D_x[31] = x_x * t17 - x_y * t10;
-    out_D_x[32] = x_x * t20 - x_y * t13;
-    out_D_x[33] = t21;
-    out_D_x[34] = t22;
-    out_D_x[35] = t23;
+    if (want_out_D_x) {
+        const lanes t3 = x_qy * (-2.0);
+        const lanes t4 = -1.0 - x_qy * t3;
+        const lanes t5 = x_qz * (-2.0);
+        const lanes t6 = x_qz * t5;
+        const lanes t7 = t4 - t6;
+        const lanes t8 = x_qx * t3;
+        const lanes t9 = x_qw * t5;
+        const lanes t10 = t8 - t9;
+        const lanes t11 = x_qx * t5;
+        const lanes t12 = x_qw * t3;
+        const lanes t13 = t11 + t12;
+        const lanes t14 = t8 + t9;
+        const lanes t15 = x_qx * (-2.0);
+        const lanes t16 = x_qx * t15;
+        const lanes t17 = -1.0 - t6 - t16;
+        const lanes t18 = x_qy * t5;
+        const lanes t19 = x_qw * t15;
+        const lanes t20 = t18 - t19;
+        const lanes t21 = t11 - t12;
+        const lanes t22 = t18 + t19;
+        const lanes t23 = t4 - t16;
+        out_D_x[0] = t7;
+        out_D_x[1] = t10;
+        out_D_x[2] = t13;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t14;
+        out_D_x[7] = t17;
+        out_D_x[8] = t20;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t21;
+        out_D_x[13] = t22;
+        out_D_x[14] = t23;
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = x_y * t21 - x_z * t14;
+        out_D_x[19] = x_y * t22 - x_z * t17;
+        out_D_x[20] = x_y * t23 - x_z * t20;
+        out_D_x[21] = t7;
+        out_D_x[22] = t10;
+        out_D_x[23] = t13;
+        out_D_x[24] = x_z * t7 - x_x * t21;
+        out_D_x[25] = x_z * t10 - x_x * t22;
+        out_D_x[26] = x_z * t13 - x_x * t23;
+        out_D_x[27] = t14;
+        out_D_x[28] = t17;
+        out_D_x[29] = t20;
+        out_D_x[30] = x_x * t14 - x_y * t7;
+        out_D_x[31] = x_x * t17 - x_y * t10;
+        out_D_x[32] = x_x * t20 - x_y * t13;
+        out_D_x[33] = t21;
+        out_D_x[34] = t22;
+        out_D_x[35] = t23;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -128,14 +131,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 36, n, k);
 }
 
-int liegen_groups_se3_inverse_batch(
+LANES_WHOLE int liegen_groups_se3_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 43 : 7);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -154,16 +158,14 @@ int liegen_groups_se3_inverse_batch(
             }
             liegen_groups_load(x, 7, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 7, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -84,7 +84,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -177,93 +179,97 @@ static void block_jacobians(
     const lanes t74 = t73 - t64;
     const lanes t75 = t64 + t73;
     const lanes t76 = t18 * t62 + (t51 * (2.0 * t30) - t59);
-    const lanes t77 = -t39;
-    const lanes t78 = -t34;
-    const lanes t79 = -t45;
-    const lanes t80 = -t49;
-    const lanes t81 = -t38;
-    const lanes t82 = -t42;
-    const lanes t83 = -t33;
-    const lanes t84 = -t46;
-    const lanes t85 = -t47;
     out[0] = t18;
     out[1] = t17;
     out[2] = t19;
     out[3] = t51;
     out[4] = t50;
     out[5] = t52;
-    out_D_x[0] = t85;
-    out_D_x[1] = t34;
-    out_D_x[2] = t84;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t83;
-    out_D_x[7] = t82;
-    out_D_x[8] = t39;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t45;
-    out_D_x[13] = t81;
-    out_D_x[14] = t80;
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = -t76;
-    out_D_x[19] = t71;
-    out_D_x[20] = -t75;
-    out_D_x[21] = t85;
-    out_D_x[22] = t34;
-    out_D_x[23] = t84;
-    out_D_x[24] = -t72;
-    out_D_x[25] = -t69;
-    out_D_x[26] = -t68;
-    out_D_x[27] = t83;
-    out_D_x[28] = t82;
-    out_D_x[29] = t39;
-    out_D_x[30] = t74;
-    out_D_x[31] = -t67;
-    out_D_x[32] = -t65;
-    out_D_x[33] = t45;
-    out_D_x[34] = t81;
-    out_D_x[35] = t80;
-    out_D_y[0] = t47;
-    out_D_y[1] = t33;
-    out_D_y[2] = t79;
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = t78;
-    out_D_y[7] = t42;
-    out_D_y[8] = t38;
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(0.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = t46;
-    out_D_y[13] = t77;
-    out_D_y[14] = t49;
-    out_D_y[15] = lanes_of(0.0);
-    out_D_y[16] = lanes_of(0.0);
-    out_D_y[17] = lanes_of(0.0);
-    out_D_y[18] = t76;
-    out_D_y[19] = t72;
-    out_D_y[20] = -t74;
-    out_D_y[21] = t47;
-    out_D_y[22] = t33;
-    out_D_y[23] = t79;
-    out_D_y[24] = -t71;
-    out_D_y[25] = t69;
-    out_D_y[26] = t67;
-    out_D_y[27] = t78;
-    out_D_y[28] = t42;
-    out_D_y[29] = t38;
-    out_D_y[30] = t75;
-    out_D_y[31] = t68;
-    out_D_y[32] = t65;
-    out_D_y[33] = t46;
-    out_D_y[34] = t77;
-    out_D_y[35] = t49;
+    if (want_out_D_x) {
+        const lanes t80 = -t49;
+        const lanes t81 = -t38;
+        const lanes t82 = -t42;
+        const lanes t83 = -t33;
+        const lanes t84 = -t46;
+        const lanes t85 = -t47;
+        out_D_x[0] = t85;
+        out_D_x[1] = t34;
+        out_D_x[2] = t84;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t83;
+        out_D_x[7] = t82;
+        out_D_x[8] = t39;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t45;
+        out_D_x[13] = t81;
+        out_D_x[14] = t80;
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = -t76;
+        out_D_x[19] = t71;
+        out_D_x[20] = -t75;
+        out_D_x[21] = t85;
+        out_D_x[22] = t34;
+        out_D_x[23] = t84;
+        out_D_x[24] = -t72;
+        out_D_x[25] = -t69;
+        out_D_x[26] = -t68;
+        out_D_x[27] = t83;
+        out_D_x[28] = t82;
+        out_D_x[29] = t39;
+        out_D_x[30] = t74;
+        out_D_x[31] = -t67;
+        out_D_x[32] = -t65;
+        out_D_x[33] = t45;
+        out_D_x[34] = t81;
+        out_D_x[35] = t80;
+    }
+    if (want_out_D_y) {
+        const lanes t77 = -t39;
+        const lanes t78 = -t34;
+        const lanes t79 = -t45;
+        out_D_y[0] = t47;
+        out_D_y[1] = t33;
+        out_D_y[2] = t79;
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = t78;
+        out_D_y[7] = t42;
+        out_D_y[8] = t38;
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(0.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = t46;
+        out_D_y[13] = t77;
+        out_D_y[14] = t49;
+        out_D_y[15] = lanes_of(0.0);
+        out_D_y[16] = lanes_of(0.0);
+        out_D_y[17] = lanes_of(0.0);
+        out_D_y[18] = t76;
+        out_D_y[19] = t72;
+        out_D_y[20] = -t74;
+        out_D_y[21] = t47;
+        out_D_y[22] = t33;
+        out_D_y[23] = t79;
+        out_D_y[24] = -t71;
+        out_D_y[25] = t69;
+        out_D_y[26] = t67;
+        out_D_y[27] = t78;
+        out_D_y[28] = t42;
+        out_D_y[29] = t38;
+        out_D_y[30] = t75;
+        out_D_y[31] = t68;
+        out_D_y[32] = t65;
+        out_D_y[33] = t46;
+        out_D_y[34] = t77;
+        out_D_y[35] = t49;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -283,7 +289,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 36, n, k);
 }
 
-int liegen_groups_se3_local_batch(
+LANES_WHOLE int liegen_groups_se3_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -292,7 +298,9 @@ int liegen_groups_se3_local_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 78 : 6);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -315,17 +323,16 @@ int liegen_groups_se3_local_batch(
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(y, 7, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 6, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 36, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 36, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

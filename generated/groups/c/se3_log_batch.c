@@ -61,7 +61,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -113,63 +114,65 @@ static void block_jacobians(
     const lanes t40 = t12 * t20;
     const lanes t41 = t21 + t12 * t40;
     const lanes t42 = x_z * t41 + (x_x * t38 + x_y * t39);
-    const lanes t43 = t12 * t42 + (t10 * t30 + t11 * t37);
-    const lanes t44 = t14 * (t14 * (-3.328472381969466e-08) + 0.002774415758409675);
-    const lanes t45 = t14 * (t14 * (t44 - 3.524948491346294) + 1618.3819503577756);
-    const lanes t46 = t14 * (t14 * (t45 - 330365.05572739476) + 30057589.92197956);
-    const lanes t47 = (t46 - 989919839.2921487) * (t18 / t17) - 0.002777777777777778;
-    const lanes t48 = t43 * t47;
-    const lanes t49 = t43 * (t20 * (-2.0)) + t14 * t48;
-    const lanes t50 = t10 * t48;
-    const lanes t51 = t22 * t37 + t30 * t32 - t11 * t50;
-    const lanes t52 = 0.5 * t42;
-    const lanes t53 = t22 * t42 + t30 * t40 - t12 * t50;
-    const lanes t54 = 0.5 * t37;
-    const lanes t55 = t11 * t48;
-    const lanes t56 = t32 * t42 + t37 * t40 - t12 * t55;
-    const lanes t57 = 0.5 * t30;
     out[0] = t10;
     out[1] = t11;
     out[2] = t12;
     out[3] = t30;
     out[4] = t37;
     out[5] = t42;
-    out_D_x[0] = t23;
-    out_D_x[1] = t31;
-    out_D_x[2] = t38;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t26;
-    out_D_x[7] = t33;
-    out_D_x[8] = t39;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t29;
-    out_D_x[13] = t36;
-    out_D_x[14] = t41;
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = t49 + t30 * (2.0 * t22) - t10 * t50;
-    out_D_x[19] = t51 - t52;
-    out_D_x[20] = t53 + t54;
-    out_D_x[21] = t23;
-    out_D_x[22] = t31;
-    out_D_x[23] = t38;
-    out_D_x[24] = t51 + t52;
-    out_D_x[25] = t49 + t37 * (2.0 * t32) - t11 * t55;
-    out_D_x[26] = t56 - t57;
-    out_D_x[27] = t26;
-    out_D_x[28] = t33;
-    out_D_x[29] = t39;
-    out_D_x[30] = t53 - t54;
-    out_D_x[31] = t56 + t57;
-    out_D_x[32] = t49 + t42 * (2.0 * t40) - t13 * t48;
-    out_D_x[33] = t29;
-    out_D_x[34] = t36;
-    out_D_x[35] = t41;
+    if (want_out_D_x) {
+        const lanes t43 = t12 * t42 + (t10 * t30 + t11 * t37);
+        const lanes t44 = t14 * (t14 * (-3.328472381969466e-08) + 0.002774415758409675);
+        const lanes t45 = t14 * (t14 * (t44 - 3.524948491346294) + 1618.3819503577756);
+        const lanes t46 = t14 * (t14 * (t45 - 330365.05572739476) + 30057589.92197956);
+        const lanes t47 = (t46 - 989919839.2921487) * (t18 / t17) - 0.002777777777777778;
+        const lanes t48 = t43 * t47;
+        const lanes t49 = t43 * (t20 * (-2.0)) + t14 * t48;
+        const lanes t50 = t10 * t48;
+        const lanes t51 = t22 * t37 + t30 * t32 - t11 * t50;
+        const lanes t52 = 0.5 * t42;
+        const lanes t53 = t22 * t42 + t30 * t40 - t12 * t50;
+        const lanes t54 = 0.5 * t37;
+        const lanes t55 = t11 * t48;
+        const lanes t56 = t32 * t42 + t37 * t40 - t12 * t55;
+        const lanes t57 = 0.5 * t30;
+        out_D_x[0] = t23;
+        out_D_x[1] = t31;
+        out_D_x[2] = t38;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t26;
+        out_D_x[7] = t33;
+        out_D_x[8] = t39;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t29;
+        out_D_x[13] = t36;
+        out_D_x[14] = t41;
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = t49 + t30 * (2.0 * t22) - t10 * t50;
+        out_D_x[19] = t51 - t52;
+        out_D_x[20] = t53 + t54;
+        out_D_x[21] = t23;
+        out_D_x[22] = t31;
+        out_D_x[23] = t38;
+        out_D_x[24] = t51 + t52;
+        out_D_x[25] = t49 + t37 * (2.0 * t32) - t11 * t55;
+        out_D_x[26] = t56 - t57;
+        out_D_x[27] = t26;
+        out_D_x[28] = t33;
+        out_D_x[29] = t39;
+        out_D_x[30] = t53 - t54;
+        out_D_x[31] = t56 + t57;
+        out_D_x[32] = t49 + t42 * (2.0 * t40) - t13 * t48;
+        out_D_x[33] = t29;
+        out_D_x[34] = t36;
+        out_D_x[35] = t41;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -185,14 +188,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 36, n, k);
 }
 
-int liegen_groups_se3_log_batch(
+LANES_WHOLE int liegen_groups_se3_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 42 : 6);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -211,16 +215,14 @@ int liegen_groups_se3_log_batch(
             }
             liegen_groups_load(x, 7, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 6, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

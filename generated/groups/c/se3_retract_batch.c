@@ -79,7 +79,9 @@ static void block_jacobians(
     const lanes *d,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_x,
+    int want_out_D_d)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -103,17 +105,10 @@ static void block_jacobians(
     lanes t6, t7; lanes_sincos(t5, &t6, &t7);
     const lanes t8 = t6 / t5;
     const lanes t9 = 0.25 / t4;
-    const lanes t10 = t8 * t7;
-    const lanes t11 = (t10 + 0.16666666666666666 * (t1 - 6.0)) * (t9 * t9);
-    const lanes t12 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
-    const lanes t13 = t1 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
-    const lanes t14 = t1 * (t1 * t13 + 2.0876755542005065e-09) - 2.755731919615483e-07;
-    const lanes t15 = t1 * (t1 * t14 + 2.4801587301323603e-05) - 0.0013888888888887987;
+    const lanes t10 = t7 * t8;
     const lanes t16 = 0.5 * t8;
     const lanes t17 = t8 * t16;
-    const lanes t18 = t1 * t15 + 0.041666666666666664;
     const lanes_mask t19 = t1 < 10.0;
-    const lanes t20 = lanes_select(t19, t18, t9 * (0.5 - t17));
     const lanes t21 = t1 * (t1 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t22 = t1 * (t1 * (t21 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t23 = t1 * (t1 * (t22 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -121,32 +116,20 @@ static void block_jacobians(
     const lanes t25 = t24 + 0.008333333333333333;
     const lanes t26 = 0.16666666666666666 - t1 * t25;
     const lanes t27 = lanes_select(t19, t26, (1.0 - t10) * t9);
-    const lanes t28 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
-    const lanes t29 = t28 * (3.0 * lanes_select(t19, t25, t11) - t20);
-    const lanes t30 = 2.0 * (t27 * t28) + t1 * t29;
     const lanes t31 = d_v2 * t27;
-    const lanes t32 = t28 * (t27 + t20 * (-2.0));
     const lanes t33 = d_v1 * t27;
-    const lanes t34 = d_v1 * t29;
-    const lanes t35 = d_v0 * t32 - t17 * d_v3;
-    const lanes t36 = d_v4 * t31 + (d_v2 * t34 + d_v5 * t33);
-    const lanes t37 = d_v0 * t29;
-    const lanes t38 = d_v0 * t27;
-    const lanes t39 = d_v1 * t32 - t17 * d_v4;
-    const lanes t40 = d_v3 * t31 + (d_v2 * t37 + d_v5 * t38);
-    const lanes t41 = d_v2 * t32 - d_v5 * t17;
-    const lanes t42 = d_v3 * t33 + (d_v1 * t37 + t38 * d_v4);
+    const lanes t37 = d_v0 * t27;
     const lanes t43 = d_v2 * t17;
-    const lanes t44 = d_v1 * t38;
+    const lanes t44 = d_v1 * t37;
     const lanes t45 = t44 + t43;
     const lanes t46 = d_v0 * t17;
     const lanes t47 = d_v2 * t33;
     const lanes t48 = t47 - t46;
     const lanes t49 = t44 - t43;
     const lanes t50 = 1.0 - t1 * t27;
-    const lanes t51 = t50 + d_v0 * t38;
+    const lanes t51 = t50 + d_v0 * t37;
     const lanes t52 = d_v1 * t17;
-    const lanes t53 = d_v2 * t38;
+    const lanes t53 = d_v2 * t37;
     const lanes t54 = t53 + t52;
     const lanes t55 = t50 + d_v1 * t33;
     const lanes t56 = d_v4 * t55 + (d_v5 * t48 + d_v3 * t45);
@@ -154,113 +137,136 @@ static void block_jacobians(
     const lanes t58 = d_v2 * t16;
     const lanes t59 = d_v1 * t16;
     const lanes t60 = d_v0 * t16;
-    const lanes t61 = t59 * 2.0;
-    const lanes t62 = t58 * 2.0;
-    const lanes t63 = t60 * 2.0;
-    const lanes t64 = t7 * t61;
-    const lanes t65 = t60 * t62;
-    const lanes t66 = t7 * t63;
-    const lanes t67 = t59 * t62;
-    const lanes t68 = t65 + t64;
-    const lanes t69 = t67 - t66;
     const lanes t70 = t53 - t52;
     const lanes t71 = t50 + d_v2 * t31;
     const lanes t72 = t47 + t46;
     const lanes t73 = d_v4 * t72 + (d_v5 * t71 + d_v3 * t70);
-    const lanes t74 = t60 * t63;
-    const lanes t75 = 1.0 - t59 * t61;
-    const lanes t76 = t75 - t74;
-    const lanes t77 = t58 * t62;
-    const lanes t78 = t7 * t62;
-    const lanes t79 = t60 * t61;
-    const lanes t80 = 1.0 - t74 - t77;
-    const lanes t81 = t79 - t78;
-    const lanes t82 = t67 + t66;
-    const lanes t83 = t75 - t77;
-    const lanes t84 = t79 + t78;
-    const lanes t85 = t65 - t64;
     const lanes t86 = 2.0 * (x_qy * t73 - x_qz * t56);
     const lanes t87 = 2.0 * (x_qz * t57 - x_qx * t73);
     const lanes t88 = 2.0 * (x_qx * t56 - x_qy * t57);
-    out[0] = x_qx * t7 + (x_qw * t60 + (x_qy * t58 - x_qz * t59));
-    out[1] = t59 * x_qw + (x_qz * t60 + x_qy * t7) - t58 * x_qx;
-    out[2] = t59 * x_qx + (t58 * x_qw + (x_qz * t7 - x_qy * t60));
-    out[3] = x_qw * t7 - (x_qz * t58 + t59 * x_qy) - t60 * x_qx;
+    out[0] = x_qw * t60 + (x_qy * t58 + (x_qx * t7 - x_qz * t59));
+    out[1] = t59 * x_qw + (t7 * x_qy + x_qz * t60) - x_qx * t58;
+    out[2] = x_qx * t59 + (t58 * x_qw + (t7 * x_qz - x_qy * t60));
+    out[3] = t7 * x_qw - x_qz * t58 - t59 * x_qy - x_qx * t60;
     out[4] = x_qw * t86 + (x_qy * t88 + (t57 + (x_x - x_qz * t87)));
-    out[5] = x_qw * t87 + (x_qz * t86 + (x_y + (t56 - x_qx * t88)));
-    out[6] = x_qw * t88 + (x_qx * t87 + (x_z + (t73 - x_qy * t86)));
-    out_D_x[0] = t83;
-    out_D_x[1] = t84;
-    out_D_x[2] = t85;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t81;
-    out_D_x[7] = t80;
-    out_D_x[8] = t82;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t68;
-    out_D_x[13] = t69;
-    out_D_x[14] = t76;
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = t56 * t85 - t73 * t84;
-    out_D_x[19] = t73 * t83 - t57 * t85;
-    out_D_x[20] = t57 * t84 - t56 * t83;
-    out_D_x[21] = t83;
-    out_D_x[22] = t84;
-    out_D_x[23] = t85;
-    out_D_x[24] = t56 * t82 - t73 * t80;
-    out_D_x[25] = t73 * t81 - t57 * t82;
-    out_D_x[26] = t57 * t80 - t56 * t81;
-    out_D_x[27] = t81;
-    out_D_x[28] = t80;
-    out_D_x[29] = t82;
-    out_D_x[30] = t56 * t76 - t73 * t69;
-    out_D_x[31] = t73 * t68 - t57 * t76;
-    out_D_x[32] = t57 * t69 - t56 * t68;
-    out_D_x[33] = t68;
-    out_D_x[34] = t69;
-    out_D_x[35] = t76;
-    out_D_d[0] = t51;
-    out_D_d[1] = t45;
-    out_D_d[2] = t70;
-    out_D_d[3] = lanes_of(0.0);
-    out_D_d[4] = lanes_of(0.0);
-    out_D_d[5] = lanes_of(0.0);
-    out_D_d[6] = t49;
-    out_D_d[7] = t55;
-    out_D_d[8] = t72;
-    out_D_d[9] = lanes_of(0.0);
-    out_D_d[10] = lanes_of(0.0);
-    out_D_d[11] = lanes_of(0.0);
-    out_D_d[12] = t54;
-    out_D_d[13] = t48;
-    out_D_d[14] = t71;
-    out_D_d[15] = lanes_of(0.0);
-    out_D_d[16] = lanes_of(0.0);
-    out_D_d[17] = lanes_of(0.0);
-    out_D_d[18] = d_v0 * t37 + (t38 * (d_v3 * 2.0) - t30);
-    out_D_d[19] = t42 - t41;
-    out_D_d[20] = t40 + t39;
-    out_D_d[21] = t51;
-    out_D_d[22] = t45;
-    out_D_d[23] = t70;
-    out_D_d[24] = t42 + t41;
-    out_D_d[25] = t33 * (d_v4 * 2.0) + (d_v1 * t34 - t30);
-    out_D_d[26] = t36 - t35;
-    out_D_d[27] = t49;
-    out_D_d[28] = t55;
-    out_D_d[29] = t72;
-    out_D_d[30] = t40 - t39;
-    out_D_d[31] = t36 + t35;
-    out_D_d[32] = t31 * (d_v5 * 2.0) + (t0 * t29 - t30);
-    out_D_d[33] = t54;
-    out_D_d[34] = t48;
-    out_D_d[35] = t71;
+    out[5] = x_qw * t87 + (x_qz * t86 + (t56 + (x_y - x_qx * t88)));
+    out[6] = x_qw * t88 + (x_qx * t87 + (t73 + (x_z - x_qy * t86)));
+    if (want_out_D_x) {
+        const lanes t61 = t59 * 2.0;
+        const lanes t62 = t58 * 2.0;
+        const lanes t63 = t60 * 2.0;
+        const lanes t64 = t7 * t61;
+        const lanes t65 = t60 * t62;
+        const lanes t66 = t7 * t63;
+        const lanes t67 = t59 * t62;
+        const lanes t68 = t65 + t64;
+        const lanes t69 = t67 - t66;
+        const lanes t74 = t60 * t63;
+        const lanes t75 = 1.0 - t59 * t61;
+        const lanes t76 = t75 - t74;
+        const lanes t77 = t58 * t62;
+        const lanes t78 = t7 * t62;
+        const lanes t79 = t60 * t61;
+        const lanes t80 = 1.0 - t74 - t77;
+        const lanes t81 = t79 - t78;
+        const lanes t82 = t67 + t66;
+        const lanes t83 = t75 - t77;
+        const lanes t84 = t79 + t78;
+        const lanes t85 = t65 - t64;
+        out_D_x[0] = t83;
+        out_D_x[1] = t84;
+        out_D_x[2] = t85;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t81;
+        out_D_x[7] = t80;
+        out_D_x[8] = t82;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t68;
+        out_D_x[13] = t69;
+        out_D_x[14] = t76;
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = t56 * t85 - t73 * t84;
+        out_D_x[19] = t73 * t83 - t57 * t85;
+        out_D_x[20] = t57 * t84 - t56 * t83;
+        out_D_x[21] = t83;
+        out_D_x[22] = t84;
+        out_D_x[23] = t85;
+        out_D_x[24] = t56 * t82 - t73 * t80;
+        out_D_x[25] = t73 * t81 - t57 * t82;
+        out_D_x[26] = t57 * t80 - t56 * t81;
+        out_D_x[27] = t81;
+        out_D_x[28] = t80;
+        out_D_x[29] = t82;
+        out_D_x[30] = t56 * t76 - t73 * t69;
+        out_D_x[31] = t73 * t68 - t57 * t76;
+        out_D_x[32] = t57 * t69 - t56 * t68;
+        out_D_x[33] = t68;
+        out_D_x[34] = t69;
+        out_D_x[35] = t76;
+    }
+    if (want_out_D_d) {
+        const lanes t11 = (t10 + 0.16666666666666666 * (t1 - 6.0)) * (t9 * t9);
+        const lanes t12 = t1 * (t1 * 3.727119152236193e-19 - 1.5548246938628861e-16);
+        const lanes t13 = t1 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
+        const lanes t14 = t1 * (t1 * t13 + 2.0876755542005065e-09) - 2.755731919615483e-07;
+        const lanes t15 = t1 * (t1 * t14 + 2.4801587301323603e-05) - 0.0013888888888887987;
+        const lanes t18 = t1 * t15 + 0.041666666666666664;
+        const lanes t20 = lanes_select(t19, t18, t9 * (0.5 - t17));
+        const lanes t28 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
+        const lanes t29 = t28 * (3.0 * lanes_select(t19, t25, t11) - t20);
+        const lanes t30 = 2.0 * (t27 * t28) + t1 * t29;
+        const lanes t32 = t28 * (t27 + t20 * (-2.0));
+        const lanes t34 = d_v0 * t32 - t17 * d_v3;
+        const lanes t35 = d_v1 * t29;
+        const lanes t36 = d_v2 * t35 + (d_v5 * t33 + d_v4 * t31);
+        const lanes t38 = d_v1 * t32 - t17 * d_v4;
+        const lanes t39 = d_v0 * t29;
+        const lanes t40 = d_v2 * t39 + (d_v5 * t37 + d_v3 * t31);
+        const lanes t41 = d_v2 * t32 - d_v5 * t17;
+        const lanes t42 = d_v1 * t39 + (t37 * d_v4 + d_v3 * t33);
+        out_D_d[0] = t51;
+        out_D_d[1] = t45;
+        out_D_d[2] = t70;
+        out_D_d[3] = lanes_of(0.0);
+        out_D_d[4] = lanes_of(0.0);
+        out_D_d[5] = lanes_of(0.0);
+        out_D_d[6] = t49;
+        out_D_d[7] = t55;
+        out_D_d[8] = t72;
+        out_D_d[9] = lanes_of(0.0);
+        out_D_d[10] = lanes_of(0.0);
+        out_D_d[11] = lanes_of(0.0);
+        out_D_d[12] = t54;
+        out_D_d[13] = t48;
+        out_D_d[14] = t71;
+        out_D_d[15] = lanes_of(0.0);
+        out_D_d[16] = lanes_of(0.0);
+        out_D_d[17] = lanes_of(0.0);
+        out_D_d[18] = d_v0 * t39 + (t37 * (d_v3 * 2.0) - t30);
+        out_D_d[19] = t42 - t41;
+        out_D_d[20] = t40 + t38;
+        out_D_d[21] = t51;
+        out_D_d[22] = t45;
+        out_D_d[23] = t70;
+        out_D_d[24] = t42 + t41;
+        out_D_d[25] = d_v1 * t35 + (t33 * (d_v4 * 2.0) - t30);
+        out_D_d[26] = t36 - t34;
+        out_D_d[27] = t49;
+        out_D_d[28] = t55;
+        out_D_d[29] = t72;
+        out_D_d[30] = t40 - t38;
+        out_D_d[31] = t36 + t34;
+        out_D_d[32] = t0 * t29 + (t31 * (d_v5 * 2.0) - t30);
+        out_D_d[33] = t54;
+        out_D_d[34] = t48;
+        out_D_d[35] = t71;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -280,7 +286,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 36, n, k);
 }
 
-int liegen_groups_se3_retract_batch(
+LANES_WHOLE int liegen_groups_se3_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in d,
@@ -289,7 +295,9 @@ int liegen_groups_se3_retract_batch(
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_d.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 79 : 7);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -312,17 +320,16 @@ int liegen_groups_se3_retract_batch(
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(d, 6, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes);
+                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes, want_out_D_x,
+                    want_out_D_d);
             }
             if (!jacobians) {
                 block_value(x_lanes, d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 7, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_d, 36, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 36, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_d) liegen_groups_store(out_D_d, 36, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -25,25 +25,25 @@ static void block_value(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = 2.0 * x_qz;
-    const lanes t1 = x_qz * t0;
-    const lanes t2 = x_qy * 2.0;
-    const lanes t3 = 1.0 - x_qy * t2;
-    const lanes t4 = x_x - p_x;
-    const lanes t5 = t2 * x_qx;
-    const lanes t6 = t0 * x_qw;
+    const lanes t0 = 2.0 * x_qy;
+    const lanes t1 = t0 * x_qw;
+    const lanes t2 = 2.0 * x_qz;
+    const lanes t3 = t2 * x_qx;
+    const lanes t4 = x_z - p_z;
+    const lanes t5 = x_qx * t0;
+    const lanes t6 = t2 * x_qw;
     const lanes t7 = x_y - p_y;
-    const lanes t8 = t2 * x_qw;
-    const lanes t9 = t0 * x_qx;
-    const lanes t10 = x_z - p_z;
-    const lanes t11 = 2.0 * x_qx;
-    const lanes t12 = x_qx * t11;
-    const lanes t13 = t4 * (t6 - t5) + t7 * (t12 + (t1 - 1.0));
-    const lanes t14 = x_qy * t0;
-    const lanes t15 = x_qw * t11;
+    const lanes t8 = x_qz * t2;
+    const lanes t9 = 1.0 - x_qy * t0;
+    const lanes t10 = x_x - p_x;
+    const lanes t11 = t2 * x_qy;
+    const lanes t12 = 2.0 * x_qx;
+    const lanes t13 = x_qw * t12;
+    const lanes t14 = t10 * (t6 - t5) - t4 * (t11 + t13);
+    const lanes t15 = x_qx * t12;
     out[0] = (t8 - t9) * t10 + ((t1 - t3) * t4 - (t5 + t6) * t7);
-    out[1] = t13 - t10 * (t14 + t15);
-    out[2] = t10 * (t12 - t3) + (t7 * (t15 - t14) - t4 * (t9 + t8));
+    out[1] = t7 * (t8 + (t15 - 1.0)) + t14;
+    out[2] = t4 * (t15 - t9) + (t7 * (t13 - t11) - t10 * (t3 + t1));
 }
 
 /* Value and Jacobians of a block. */
@@ -52,7 +52,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -64,66 +66,70 @@ static void block_jacobians(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t1 - t3;
-    const lanes t5 = x_x - p_x;
-    const lanes t6 = t0 * x_qx;
-    const lanes t7 = t2 * x_qw;
-    const lanes t8 = t6 + t7;
-    const lanes t9 = x_y - p_y;
-    const lanes t10 = t2 * x_qx;
-    const lanes t11 = t0 * x_qw;
-    const lanes t12 = t10 - t11;
-    const lanes t13 = x_z - p_z;
-    const lanes t14 = t12 * t13 + (t4 * t5 + t8 * t9);
-    const lanes t15 = -t14;
-    const lanes t16 = t6 - t7;
-    const lanes t17 = 2.0 * x_qx;
-    const lanes t18 = x_qx * t17;
-    const lanes t19 = 1.0 - t3 - t18;
-    const lanes t20 = x_qy * t2;
-    const lanes t21 = x_qw * t17;
-    const lanes t22 = t20 + t21;
-    const lanes t23 = t13 * t22 + (t5 * t16 + t9 * t19);
-    const lanes t24 = -t23;
-    const lanes t25 = t10 + t11;
-    const lanes t26 = t20 - t21;
-    const lanes t27 = t1 - t18;
-    const lanes t28 = t13 * t27 + (t5 * t25 + t9 * t26);
-    const lanes t29 = -t28;
-    out[0] = t15;
-    out[1] = t24;
-    out[2] = t29;
-    out_D_x[0] = lanes_of(0.0);
-    out_D_x[1] = t28;
-    out_D_x[2] = t24;
-    out_D_x[3] = lanes_of(-1.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t29;
-    out_D_x[7] = lanes_of(0.0);
-    out_D_x[8] = t14;
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(-1.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = t23;
-    out_D_x[13] = t15;
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(0.0);
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(-1.0);
-    out_D_p[0] = t4;
-    out_D_p[1] = t8;
-    out_D_p[2] = t12;
-    out_D_p[3] = t16;
-    out_D_p[4] = t19;
-    out_D_p[5] = t22;
-    out_D_p[6] = t25;
-    out_D_p[7] = t26;
-    out_D_p[8] = t27;
+    const lanes t0 = 2.0 * x_qx;
+    const lanes t1 = 2.0 * x_qz;
+    const lanes t2 = x_qw * t0;
+    const lanes t3 = t1 * x_qy;
+    const lanes t4 = t3 - t2;
+    const lanes t5 = t3 + t2;
+    const lanes t6 = 2.0 * x_qy;
+    const lanes t7 = t6 * x_qw;
+    const lanes t8 = t1 * x_qx;
+    const lanes t9 = t8 + t7;
+    const lanes t10 = t8 - t7;
+    const lanes t11 = t1 * x_qw;
+    const lanes t12 = x_qx * t6;
+    const lanes t13 = t12 - t11;
+    const lanes t14 = t12 + t11;
+    const lanes t15 = x_qx * t0;
+    const lanes t16 = x_qz * t1;
+    const lanes t17 = 1.0 - x_qy * t6;
+    const lanes t18 = 1.0 - t15 - t16;
+    const lanes t19 = t17 - t15;
+    const lanes t20 = t17 - t16;
+    const lanes t21 = x_y - p_y;
+    const lanes t22 = x_x - p_x;
+    const lanes t23 = x_z - p_z;
+    const lanes t24 = t23 * t19 + (t22 * t9 + t21 * t4);
+    const lanes t25 = t21 * t18 + (t23 * t5 + t22 * t13);
+    const lanes t26 = t20 * t22 + (t10 * t23 + t14 * t21);
+    const lanes t27 = -t24;
+    const lanes t28 = -t25;
+    const lanes t29 = -t26;
+    out[0] = t29;
+    out[1] = t28;
+    out[2] = t27;
+    if (want_out_D_x) {
+        out_D_x[0] = lanes_of(0.0);
+        out_D_x[1] = t24;
+        out_D_x[2] = t28;
+        out_D_x[3] = lanes_of(-1.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t27;
+        out_D_x[7] = lanes_of(0.0);
+        out_D_x[8] = t26;
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(-1.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = t25;
+        out_D_x[13] = t29;
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(0.0);
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(-1.0);
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = t20;
+        out_D_p[1] = t14;
+        out_D_p[2] = t10;
+        out_D_p[3] = t13;
+        out_D_p[4] = t18;
+        out_D_p[5] = t5;
+        out_D_p[6] = t9;
+        out_D_p[7] = t4;
+        out_D_p[8] = t19;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -143,7 +149,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 9, n, k);
 }
 
-int liegen_groups_se3_transform_to_batch(
+LANES_WHOLE int liegen_groups_se3_transform_to_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -152,7 +158,9 @@ int liegen_groups_se3_transform_to_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 30 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -175,17 +183,16 @@ int liegen_groups_se3_transform_to_batch(
             liegen_groups_load(x, 7, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 18, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 18, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

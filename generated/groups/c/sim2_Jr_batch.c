@@ -29,7 +29,7 @@ static void block_value(
     lanes t8, t9; lanes_sincos(t7, &t8, &t9);
     const lanes t10 = t8 / t7;
     const lanes t11 = t0 * (t0 * t6 + 2.4801587301323603e-05) - 0.0013888888888887987;
-    const lanes t12 = 0.5 * (t10 * t10);
+    const lanes t12 = t10 * (0.5 * t10);
     const lanes t13 = 0.25 / t3;
     const lanes t14 = 0.041666666666666664 + t0 * t11;
     const lanes_mask t15 = t0 < 10.0;
@@ -42,7 +42,7 @@ static void block_value(
     const lanes t22 = t0 * (t0 * t21 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
     const lanes t23 = t0 * (t0 * t22 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
     const lanes t24 = t10 * t9;
-    const lanes t25 = t13 * (t13 * (t24 + 0.16666666666666666 * (t0 - 6.0)));
+    const lanes t25 = (t24 + 0.16666666666666666 * (t0 - 6.0)) * (t13 * t13);
     const lanes t26 = t0 * (t0 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t27 = t0 * (t0 * (t26 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t28 = t0 * (t0 * (t27 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -55,28 +55,28 @@ static void block_value(
     const lanes t35 = lanes_select(t34, lanes_of(-2.75), d_v3);
     const lanes t36 = lanes_exp(-d_v3);
     const lanes t37 = 1.0 / t36;
-    const lanes t38 = d_v3 * (2.0567783710503175e-20 + d_v3 * 8.930560564422333e-22);
-    const lanes t39 = 8.212278817078935e-18 + d_v3 * (4.1178635428421474e-19 + t38);
-    const lanes t40 = 2.8114690303671545e-15 + d_v3 * (1.561797933076898e-16 + d_v3 * t39);
-    const lanes t41 = 7.647165960397453e-13 + d_v3 * (4.779485737082404e-14 + d_v3 * t40);
-    const lanes t42 = 1.6059043692023794e-10 + d_v3 * (1.1470745308538233e-11 + d_v3 * t41);
-    const lanes t43 = 2.5052108389124404e-08 + d_v3 * (2.0876756992690708e-09 + d_v3 * t42);
-    const lanes t44 = 2.7557319223944413e-06 + d_v3 * (2.755731922395698e-07 + d_v3 * t43);
-    const lanes t45 = 0.00019841269841270012 + d_v3 * (2.4801587301587247e-05 + d_v3 * t44);
-    const lanes t46 = 0.008333333333333333 + d_v3 * (0.001388888888888889 + d_v3 * t45);
-    const lanes t47 = 0.041666666666666664 + d_v3 * t46;
-    const lanes t48 = -1.0 / t35;
-    const lanes t49 = (1.0 - t37) * t48;
-    const lanes t50 = t48 * (1.0 - t49);
-    const lanes t51 = t48 * (0.5 - t50);
-    const lanes t52 = t48 * (0.16666666666666666 - t51);
-    const lanes t53 = t48 * t48;
-    const lanes t54 = t53 * (t37 * (t35 - 3.0) + (t35 * (2.0 + 0.5 * t35) + 3.0));
-    const lanes t55 = t53 * (1.0 + t37 * (t35 - 1.0));
-    const lanes t56 = (t37 * (2.0 - t35) + (-2.0 - t35)) * (t48 * t53);
-    const lanes t57 = 0.041666666666666664 + d_v3 * (t46 * (-4.0) + (t46 + t47));
-    const lanes t58 = 0.16666666666666666 + d_v3 * (t47 + t57);
-    const lanes t59 = 0.16666666666666666 + d_v3 * t47;
+    const lanes t38 = t37 * (t35 - 3.0) + (3.0 + t35 * (2.0 + 0.5 * t35));
+    const lanes t39 = -1.0 / t35;
+    const lanes t40 = t39 * t39;
+    const lanes t41 = (1.0 - t37) * t39;
+    const lanes t42 = t39 * (1.0 - t41);
+    const lanes t43 = t39 * (0.5 - t42);
+    const lanes t44 = t39 * (0.16666666666666666 - t43);
+    const lanes t45 = t40 * (1.0 + t37 * (t35 - 1.0));
+    const lanes t46 = (t37 * (2.0 - t35) + (-2.0 - t35)) * (t39 * t40);
+    const lanes t47 = d_v3 * (2.0567783710503175e-20 + d_v3 * 8.930560564422333e-22);
+    const lanes t48 = 8.212278817078935e-18 + d_v3 * (4.1178635428421474e-19 + t47);
+    const lanes t49 = 2.8114690303671545e-15 + d_v3 * (1.561797933076898e-16 + d_v3 * t48);
+    const lanes t50 = 7.647165960397453e-13 + d_v3 * (4.779485737082404e-14 + d_v3 * t49);
+    const lanes t51 = 1.6059043692023794e-10 + d_v3 * (1.1470745308538233e-11 + d_v3 * t50);
+    const lanes t52 = 2.5052108389124404e-08 + d_v3 * (2.0876756992690708e-09 + d_v3 * t51);
+    const lanes t53 = 2.7557319223944413e-06 + d_v3 * (2.755731922395698e-07 + d_v3 * t52);
+    const lanes t54 = 0.00019841269841270012 + d_v3 * (2.4801587301587247e-05 + d_v3 * t53);
+    const lanes t55 = 0.008333333333333333 + d_v3 * (0.001388888888888889 + d_v3 * t54);
+    const lanes t56 = 0.041666666666666664 + d_v3 * t55;
+    const lanes t57 = 0.041666666666666664 + d_v3 * (t56 + (t55 + t55 * (-4.0)));
+    const lanes t58 = 0.16666666666666666 + d_v3 * (t56 + t57);
+    const lanes t59 = 0.16666666666666666 + d_v3 * t56;
     const lanes t60 = 0.5 + d_v3 * t59;
     const lanes t61 = d_v3 * d_v3;
     const lanes_mask t62 = t0 + t61 < 8.673617379884035e-19;
@@ -85,19 +85,19 @@ static void block_value(
     const lanes t65 = t61 / t64;
     const lanes t66 = t63 / t64;
     const lanes t67 = d_v3 * lanes_select(t17, t0 * t23 - 0.001388888888888889, t19);
-    const lanes t68 = t65 * lanes_select(t34, t46, t48 * (0.041666666666666664 - t52));
-    const lanes t69 = t65 * lanes_select(t34, t47, t52) + t66 * (t16 + d_v3 * t31);
-    const lanes t70 = t65 * lanes_select(t34, t59, t51) + t66 * (t33 + d_v3 * t16);
-    const lanes t71 = t66 * (d_v3 * (t66 * (t67 - t31) - t68) - t69);
-    const lanes t72 = t65 * lanes_select(t34, t58, t56) + t66 * (t70 + d_v3 * t69);
+    const lanes t68 = t65 * lanes_select(t34, t55, t39 * (0.041666666666666664 - t44));
+    const lanes t69 = t65 * lanes_select(t34, t56, t44) + t66 * (t16 + d_v3 * t31);
+    const lanes t70 = t65 * lanes_select(t34, t59, t43) + t66 * (t33 + d_v3 * t16);
+    const lanes t71 = t65 * lanes_select(t34, t57, t38 * (t40 * t40));
+    const lanes t72 = t65 * lanes_select(t34, t58, t46) + t66 * (t70 + d_v3 * t69);
     const lanes t73 = t36 * t0;
-    const lanes t74 = t73 * (t71 - t65 * lanes_select(t34, t57, t53 * t54));
-    const lanes t75 = t36 * lanes_select(t34, 0.5 + d_v3 * (t59 + t58), t55) + t74;
+    const lanes t74 = t73 * (t66 * (d_v3 * (t66 * (t67 - t31) - t68) - t69) - t71);
+    const lanes t75 = t36 * lanes_select(t34, 0.5 + d_v3 * (t59 + t58), t45) + t74;
     const lanes t76 = t36 * d_v2;
     const lanes t77 = t76 * t72;
     const lanes t78 = d_v0 * t75 + t77 * d_v1;
-    const lanes t79 = t36 * lanes_select(t34, 1.0 + d_v3 * t60, t49) - t73 * t70;
-    const lanes t80 = t65 * lanes_select(t34, t60, t50) + t66 * (t12 + d_v3 * t33);
+    const lanes t79 = t36 * lanes_select(t34, 1.0 + d_v3 * t60, t41) - t73 * t70;
+    const lanes t80 = t65 * lanes_select(t34, t60, t42) + t66 * (t12 + d_v3 * t33);
     const lanes t81 = d_v0 * t77 - d_v1 * t75;
     const lanes t82 = t76 * t80;
     out[0] = t79;
@@ -129,7 +129,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 16, n, k);
 }
 
-int liegen_groups_sim2_Jr_batch(
+LANES_WHOLE int liegen_groups_sim2_Jr_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

@@ -44,7 +44,7 @@ static void block_value(
     const lanes t24 = t0 * (t0 * t23 + 2.7557319223993533e-07) - 2.4801587301587488e-05;
     const lanes t25 = lanes_select(t18, 0.001388888888888889 + t0 * t24, t20);
     const lanes t26 = t11 * t10;
-    const lanes t27 = t12 * (t12 * (t26 + 0.16666666666666666 * (t0 - 6.0)));
+    const lanes t27 = (t26 + 0.16666666666666666 * (t0 - 6.0)) * (t12 * t12);
     const lanes t28 = t0 * (t0 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t29 = t0 * (t0 * (t28 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t30 = t0 * (t0 * (t29 + 1.605904321180956e-10) - 2.505210837344028e-08);
@@ -60,7 +60,7 @@ static void block_value(
     const lanes t40 = 1.0 / lanes_select(t39, lanes_of(4.47213595499958), d_v3);
     const lanes t41 = t40 * t40;
     const lanes t42 = t41 * (1.0 + (t36 + t37) * (-0.5));
-    const lanes t43 = (1.0 + t40 * (0.5 * (t37 - t36))) * t41;
+    const lanes t43 = (1.0 + (t37 - t36) * (0.5 * t40)) * t41;
     const lanes t44 = t41 * (-0.5 - t42);
     const lanes t45 = t38 * (3.4565955041241694e-26 + t38 * 3.6326829868633628e-28);
     const lanes t46 = 1.9532920807021222e-20 + t38 * (4.013242371241884e-23 + t45);
@@ -78,31 +78,31 @@ static void block_value(
     const lanes t58 = 0.041666666666666664 + t38 * t57;
     const lanes t59 = lanes_select(t39, t58, t44);
     const lanes t60 = lanes_select(t39, -0.5 - t38 * t58, t42);
-    const lanes_mask t61 = t0 + t38 < 8.673617379884035e-19;
+    const lanes_mask t61 = t38 + t0 < 8.673617379884035e-19;
     const lanes t62 = lanes_select(t61, lanes_of(8.673617379884035e-19), t0);
     const lanes t63 = t38 + t62;
     const lanes t64 = t62 / t63;
     const lanes t65 = t38 / t63;
-    const lanes t66 = t65 * lanes_select(t39, t57, t41 * (t44 - 0.041666666666666664));
-    const lanes t67 = t66 + t64 * t25;
-    const lanes t68 = t59 * t65 + t17 * t64;
+    const lanes t66 = t59 * t65 + t64 * t17;
+    const lanes t67 = t65 * lanes_select(t39, t57, t41 * (t44 - 0.041666666666666664));
+    const lanes t68 = t67 + t64 * t25;
     const lanes t69 = t65 * lanes_select(t39, t50, t41 * (-0.16666666666666666 - t43));
     const lanes t70 = t35 + (-2.0 * t17);
     const lanes t71 = -0.5 / t60;
     const lanes t72 = (t59 * (-2.0) - t51) * t71;
     const lanes t73 = 0.5 / t14;
-    const lanes t74 = t65 * (t67 + t68 * (t72 - t70 * t73));
-    const lanes t75 = t0 * 2.0;
-    const lanes t76 = (t70 * t68 + t14 * (2.0 * t67 - t64 * t33 - t69)) * t75;
+    const lanes t74 = t65 * (t68 + t66 * (t72 - t73 * t70));
+    const lanes t75 = 2.0 * t0;
+    const lanes t76 = t70 * t66 + t14 * (2.0 * t68 - (t69 + t64 * t33));
     const lanes t77 = 1.0 / (-2.0 * (t60 * t65) + t13 * t64);
     const lanes t78 = t75 * t77;
-    const lanes t79 = t77 * (t35 * t64 - t51 * t65);
-    const lanes t80 = t72 + t73 * (t71 * t76);
+    const lanes t79 = t77 * (t64 * t35 - t51 * t65);
+    const lanes t80 = t72 + t76 * (t73 * (t71 * t75));
     const lanes t81 = t80 + t78 * (t74 + (t33 + t25 * (-4.0)) * (0.5 * t64));
     const lanes t82 = 0.5 + d_v3 * t81;
     const lanes t83 = d_v2 * (t79 - t81);
     const lanes t84 = t83 * d_v1 - d_v0 * t82;
-    const lanes t85 = t38 * t72 + (1.0 + d_v3 * 0.5 - t78 * (t14 * t80));
+    const lanes t85 = t38 * t72 + (1.0 + d_v3 * 0.5) - t80 * (t14 * t78);
     const lanes t86 = d_v0 * t83 + d_v1 * t82;
     const lanes t87 = d_v2 * (0.5 + d_v3 * t79);
     out[0] = t85;
@@ -134,7 +134,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 16, n, k);
 }
 
-int liegen_groups_sim2_Jr_inv_batch(
+LANES_WHOLE int liegen_groups_sim2_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

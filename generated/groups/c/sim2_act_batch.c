@@ -32,7 +32,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -43,23 +45,27 @@ static void block_jacobians(
     const lanes p_y = p[1];
     const lanes t0 = x_c * x_scale;
     const lanes t1 = x_s * x_scale;
-    const lanes t2 = p_y * t0 + p_x * t1;
-    const lanes t3 = p_x * t0 - p_y * t1;
     const lanes t4 = -t1;
     out[0] = x_x + x_scale * (x_c * p_x - x_s * p_y);
     out[1] = x_y + x_scale * (x_s * p_x + x_c * p_y);
-    out_D_x[0] = t0;
-    out_D_x[1] = t4;
-    out_D_x[2] = -t2;
-    out_D_x[3] = t3;
-    out_D_x[4] = t1;
-    out_D_x[5] = t0;
-    out_D_x[6] = t3;
-    out_D_x[7] = t2;
-    out_D_p[0] = t0;
-    out_D_p[1] = t4;
-    out_D_p[2] = t1;
-    out_D_p[3] = t0;
+    if (want_out_D_x) {
+        const lanes t2 = p_y * t0 + p_x * t1;
+        const lanes t3 = p_x * t0 - p_y * t1;
+        out_D_x[0] = t0;
+        out_D_x[1] = t4;
+        out_D_x[2] = -t2;
+        out_D_x[3] = t3;
+        out_D_x[4] = t1;
+        out_D_x[5] = t0;
+        out_D_x[6] = t3;
+        out_D_x[7] = t2;
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = t0;
+        out_D_p[1] = t4;
+        out_D_p[2] = t1;
+        out_D_p[3] = t0;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -79,7 +85,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 4, n, k);
 }
 
-int liegen_groups_sim2_act_batch(
+LANES_WHOLE int liegen_groups_sim2_act_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -88,7 +94,9 @@ int liegen_groups_sim2_act_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 14 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -111,17 +119,16 @@ int liegen_groups_sim2_act_batch(
             liegen_groups_load(x, 5, k, count, x_lanes);
             liegen_groups_load(p, 2, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 8, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 4, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 8, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 4, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

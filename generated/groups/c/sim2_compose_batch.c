@@ -38,7 +38,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -50,48 +52,52 @@ static void block_jacobians(
     const lanes y_x = y[2];
     const lanes y_y = y[3];
     const lanes y_scale = y[4];
-    const lanes t0 = 1.0 / y_scale;
-    const lanes t1 = y_c * t0;
-    const lanes t2 = y_s * t0;
-    const lanes t3 = t0 * (y_c * y_y - y_s * y_x);
-    const lanes t4 = t0 * (y_c * y_x + y_s * y_y);
     out[0] = x_c * y_c - x_s * y_s;
     out[1] = x_s * y_c + x_c * y_s;
     out[2] = x_x + x_scale * (x_c * y_x - x_s * y_y);
     out[3] = x_y + x_scale * (x_s * y_x + x_c * y_y);
     out[4] = x_scale * y_scale;
-    out_D_x[0] = t1;
-    out_D_x[1] = t2;
-    out_D_x[2] = -t3;
-    out_D_x[3] = t4;
-    out_D_x[4] = -t2;
-    out_D_x[5] = t1;
-    out_D_x[6] = t4;
-    out_D_x[7] = t3;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(1.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(1.0);
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(1.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(0.0);
-    out_D_y[8] = lanes_of(0.0);
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(1.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = lanes_of(0.0);
-    out_D_y[15] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t0 = 1.0 / y_scale;
+        const lanes t1 = y_c * t0;
+        const lanes t2 = y_s * t0;
+        const lanes t3 = t0 * (y_c * y_y - y_s * y_x);
+        const lanes t4 = t0 * (y_c * y_x + y_s * y_y);
+        out_D_x[0] = t1;
+        out_D_x[1] = t2;
+        out_D_x[2] = -t3;
+        out_D_x[3] = t4;
+        out_D_x[4] = -t2;
+        out_D_x[5] = t1;
+        out_D_x[6] = t4;
+        out_D_x[7] = t3;
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(1.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(1.0);
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(1.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(0.0);
+        out_D_y[8] = lanes_of(0.0);
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(1.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = lanes_of(0.0);
+        out_D_y[15] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -111,7 +117,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 16, n, k);
 }
 
-int liegen_groups_sim2_compose_batch(
+LANES_WHOLE int liegen_groups_sim2_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -120,7 +126,9 @@ int liegen_groups_sim2_compose_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 37 : 5);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -143,17 +151,16 @@ int liegen_groups_sim2_compose_batch(
             liegen_groups_load(x, 5, k, count, x_lanes);
             liegen_groups_load(y, 5, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 5, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 16, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 16, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -78,7 +78,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *d,
     lanes *out,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_d)
 {
     const lanes d_v0 = d[0];
     const lanes d_v1 = d[1];
@@ -95,61 +96,26 @@ static void block_jacobians(
     lanes t8, t9; lanes_sincos(t7, &t8, &t9);
     const lanes t10 = t8 / t7;
     const lanes t11 = t0 * (t0 * t6 + 2.4801587301323603e-05) - 0.0013888888888887987;
-    const lanes t12 = 0.5 * (t10 * t10);
+    const lanes t12 = t10 * (0.5 * t10);
     const lanes t13 = 0.25 / t3;
     const lanes t14 = 0.041666666666666664 + t0 * t11;
     const lanes_mask t15 = t0 < 10.0;
     const lanes t16 = lanes_select(t15, t14, t13 * (0.5 - t12));
-    const lanes_mask t17 = t0 <= 10.0;
-    const lanes t18 = lanes_select(t17, lanes_of(10.0), t0);
-    const lanes t19 = (t16 - 0.041666666666666664) / t18;
-    const lanes t20 = t0 * (t0 * (-8.238352127228608e-22) + 4.09903975815473e-19);
-    const lanes t21 = t0 * (t20 - 1.5618190715606994e-16) + 4.7794722734271995e-14;
-    const lanes t22 = t0 * (t0 * t21 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
-    const lanes t23 = t0 * (t0 * t22 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
     const lanes t24 = t10 * t9;
-    const lanes t25 = t13 * (t13 * (t24 + 0.16666666666666666 * (t0 - 6.0)));
     const lanes t26 = t0 * (t0 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t27 = t0 * (t0 * (t26 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t28 = t0 * (t0 * (t27 + 1.605904321180956e-10) - 2.505210837344028e-08);
     const lanes t29 = t0 * (t0 * (t28 + 2.755731922387232e-06) - 0.0001984126984126945);
     const lanes t30 = 0.008333333333333333 + t29;
-    const lanes t31 = lanes_select(t15, t30, t25);
     const lanes t32 = 0.16666666666666666 - t0 * t30;
     const lanes t33 = lanes_select(t15, t32, (1.0 - t24) * t13);
     const lanes_mask t34 = lanes_abs(d_v3) <= 2.75;
-    const lanes t35 = lanes_select(t34, lanes_of(-2.75), d_v3);
-    const lanes t36 = lanes_exp(-d_v3);
-    const lanes t37 = 1.0 / t36;
-    const lanes t38 = d_v3 * 8.930560564422333e-22;
-    const lanes t39 = 4.1178635428421474e-19 + d_v3 * (t38 + 2.0567783710503175e-20);
-    const lanes t40 = 1.561797933076898e-16 + d_v3 * (8.212278817078935e-18 + d_v3 * t39);
-    const lanes t41 = 4.779485737082404e-14 + d_v3 * (2.8114690303671545e-15 + d_v3 * t40);
-    const lanes t42 = 1.1470745308538233e-11 + d_v3 * (7.647165960397453e-13 + d_v3 * t41);
-    const lanes t43 = 2.0876756992690708e-09 + d_v3 * (1.6059043692023794e-10 + d_v3 * t42);
-    const lanes t44 = 2.755731922395698e-07 + d_v3 * (2.5052108389124404e-08 + d_v3 * t43);
-    const lanes t45 = 2.4801587301587247e-05 + d_v3 * (2.7557319223944413e-06 + d_v3 * t44);
-    const lanes t46 = 0.001388888888888889 + d_v3 * (0.00019841269841270012 + d_v3 * t45);
-    const lanes t47 = 0.008333333333333333 + d_v3 * t46;
-    const lanes t48 = 0.041666666666666664 + d_v3 * t47;
-    const lanes t49 = -1.0 / t35;
-    const lanes t50 = (1.0 - t37) * t49;
-    const lanes t51 = t49 * (1.0 - t50);
-    const lanes t52 = t49 * (0.5 - t51);
-    const lanes t53 = t49 * (0.16666666666666666 - t52);
-    const lanes t54 = t49 * t49;
-    const lanes t55 = t54 * (t37 * (t35 - 3.0) + (t35 * (2.0 + 0.5 * t35) + 3.0));
-    const lanes t56 = t54 * (1.0 + t37 * (t35 - 1.0));
-    const lanes t57 = (t37 * (2.0 - t35) + (-2.0 - t35)) * (t49 * t54);
-    const lanes t58 = 1.0 / lanes_select(t34, lanes_of(2.75), d_v3);
-    const lanes t59 = lanes_exp(d_v3);
-    const lanes t60 = (1.0 + (-1.0 / t59)) * t58;
-    const lanes t61 = t58 * (1.0 - t60);
-    const lanes t62 = 0.041666666666666664 + d_v3 * (t47 * (-4.0) + (t47 + t48));
-    const lanes t63 = 0.16666666666666666 + d_v3 * (t48 + t62);
-    const lanes t64 = 0.16666666666666666 + d_v3 * t48;
-    const lanes t65 = 0.5 + d_v3 * t64;
-    const lanes t66 = d_v3 * (2.0567783710503175e-20 - t38) - 4.1178635428421474e-19;
+    const lanes t47 = 1.0 / lanes_select(t34, lanes_of(2.75), d_v3);
+    const lanes t48 = lanes_exp(d_v3);
+    const lanes t49 = (1.0 + (-1.0 / t48)) * t47;
+    const lanes t50 = t47 * (1.0 - t49);
+    const lanes t51 = d_v3 * 8.930560564422333e-22;
+    const lanes t66 = d_v3 * (2.0567783710503175e-20 - t51) - 4.1178635428421474e-19;
     const lanes t67 = d_v3 * (d_v3 * t66 + 8.212278817078935e-18) - 1.561797933076898e-16;
     const lanes t68 = d_v3 * (d_v3 * t67 + 2.8114690303671545e-15) - 4.779485737082404e-14;
     const lanes t69 = d_v3 * (d_v3 * t68 + 7.647165960397453e-13) - 1.1470745308538233e-11;
@@ -166,50 +132,87 @@ static void block_jacobians(
     const lanes t80 = t77 + t79;
     const lanes t81 = t77 / t80;
     const lanes t82 = t79 / t80;
-    const lanes t83 = d_v3 * lanes_select(t17, t0 * t23 - 0.001388888888888889, t19);
-    const lanes t84 = t81 * lanes_select(t34, t47, t49 * (0.041666666666666664 - t53));
-    const lanes t85 = t81 * lanes_select(t34, t48, t53) + t82 * (t16 + d_v3 * t31);
     const lanes t86 = d_v3 * t16;
-    const lanes t87 = t81 * lanes_select(t34, t64, t52) + t82 * (t33 + t86);
-    const lanes t88 = t82 * (d_v3 * (t82 * (t83 - t31) - t84) - t85);
-    const lanes t89 = t81 * lanes_select(t34, t63, t57) + t82 * (t87 + d_v3 * t85);
-    const lanes t90 = t0 * t36;
-    const lanes t91 = t90 * (t88 - t81 * lanes_select(t34, t62, t54 * t55));
-    const lanes t92 = t36 * lanes_select(t34, 0.5 + d_v3 * (t64 + t63), t56) + t91;
-    const lanes t93 = d_v2 * t36;
-    const lanes t94 = t93 * t89;
-    const lanes t95 = d_v0 * t92 + d_v1 * t94;
-    const lanes t96 = t36 * lanes_select(t34, 1.0 + d_v3 * t65, t50) - t90 * t87;
-    const lanes t97 = t81 * lanes_select(t34, t75, t58 * (0.5 - t61));
+    const lanes t97 = t81 * lanes_select(t34, t75, t47 * (0.5 - t50));
     const lanes t98 = d_v3 * t33;
-    const lanes t99 = t81 * lanes_select(t34, t76, t61) + t82 * (t12 - t98);
-    const lanes t100 = t59 * lanes_select(t34, 1.0 - d_v3 * t76, t60);
-    const lanes t101 = t100 + (t82 * (t86 - t33) - t97) * (t59 * t0);
-    const lanes t102 = t99 * (d_v2 * t59);
-    const lanes t103 = d_v0 * t94 - d_v1 * t92;
-    const lanes t104 = t93 * (t81 * lanes_select(t34, t65, t51) + t82 * (t12 + t98));
+    const lanes t99 = t81 * lanes_select(t34, t76, t50) + t82 * (t12 - t98);
+    const lanes t100 = t48 * lanes_select(t34, 1.0 - d_v3 * t76, t49);
+    const lanes t101 = t100 + (t82 * (t86 - t33) - t97) * (t48 * t0);
+    const lanes t102 = t99 * (d_v2 * t48);
     lanes t105, t106; lanes_sincos(d_v2, &t105, &t106);
     out[0] = t106;
     out[1] = t105;
     out[2] = d_v0 * t101 - d_v1 * t102;
     out[3] = d_v0 * t102 + t101 * d_v1;
-    out[4] = t59;
-    out_D_d[0] = t96;
-    out_D_d[1] = t104;
-    out_D_d[2] = t103;
-    out_D_d[3] = t95;
-    out_D_d[4] = -t104;
-    out_D_d[5] = t96;
-    out_D_d[6] = t95;
-    out_D_d[7] = -t103;
-    out_D_d[8] = lanes_of(0.0);
-    out_D_d[9] = lanes_of(0.0);
-    out_D_d[10] = lanes_of(1.0);
-    out_D_d[11] = lanes_of(0.0);
-    out_D_d[12] = lanes_of(0.0);
-    out_D_d[13] = lanes_of(0.0);
-    out_D_d[14] = lanes_of(0.0);
-    out_D_d[15] = lanes_of(1.0);
+    out[4] = t48;
+    if (want_out_D_d) {
+        const lanes_mask t17 = t0 <= 10.0;
+        const lanes t18 = lanes_select(t17, lanes_of(10.0), t0);
+        const lanes t19 = (t16 - 0.041666666666666664) / t18;
+        const lanes t20 = t0 * (t0 * (-8.238352127228608e-22) + 4.09903975815473e-19);
+        const lanes t21 = t0 * (t20 - 1.5618190715606994e-16) + 4.7794722734271995e-14;
+        const lanes t22 = t0 * (t0 * t21 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
+        const lanes t23 = t0 * (t0 * t22 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
+        const lanes t25 = (t24 + 0.16666666666666666 * (t0 - 6.0)) * (t13 * t13);
+        const lanes t31 = lanes_select(t15, t30, t25);
+        const lanes t35 = lanes_select(t34, lanes_of(-2.75), d_v3);
+        const lanes t36 = lanes_exp(-d_v3);
+        const lanes t37 = 1.0 / t36;
+        const lanes t38 = t37 * (t35 - 3.0) + (3.0 + t35 * (2.0 + 0.5 * t35));
+        const lanes t39 = -1.0 / t35;
+        const lanes t40 = t39 * t39;
+        const lanes t41 = (1.0 - t37) * t39;
+        const lanes t42 = t39 * (1.0 - t41);
+        const lanes t43 = t39 * (0.5 - t42);
+        const lanes t44 = t39 * (0.16666666666666666 - t43);
+        const lanes t45 = t40 * (1.0 + t37 * (t35 - 1.0));
+        const lanes t46 = (t37 * (2.0 - t35) + (-2.0 - t35)) * (t39 * t40);
+        const lanes t52 = 4.1178635428421474e-19 + d_v3 * (t51 + 2.0567783710503175e-20);
+        const lanes t53 = 1.561797933076898e-16 + d_v3 * (8.212278817078935e-18 + d_v3 * t52);
+        const lanes t54 = 4.779485737082404e-14 + d_v3 * (2.8114690303671545e-15 + d_v3 * t53);
+        const lanes t55 = 1.1470745308538233e-11 + d_v3 * (7.647165960397453e-13 + d_v3 * t54);
+        const lanes t56 = 2.0876756992690708e-09 + d_v3 * (1.6059043692023794e-10 + d_v3 * t55);
+        const lanes t57 = 2.755731922395698e-07 + d_v3 * (2.5052108389124404e-08 + d_v3 * t56);
+        const lanes t58 = 2.4801587301587247e-05 + d_v3 * (2.7557319223944413e-06 + d_v3 * t57);
+        const lanes t59 = 0.001388888888888889 + d_v3 * (0.00019841269841270012 + d_v3 * t58);
+        const lanes t60 = 0.008333333333333333 + d_v3 * t59;
+        const lanes t61 = 0.041666666666666664 + d_v3 * t60;
+        const lanes t62 = 0.041666666666666664 + d_v3 * (t61 + (t60 + t60 * (-4.0)));
+        const lanes t63 = 0.16666666666666666 + d_v3 * (t61 + t62);
+        const lanes t64 = 0.16666666666666666 + d_v3 * t61;
+        const lanes t65 = 0.5 + d_v3 * t64;
+        const lanes t83 = d_v3 * lanes_select(t17, t0 * t23 - 0.001388888888888889, t19);
+        const lanes t84 = t81 * lanes_select(t34, t60, t39 * (0.041666666666666664 - t44));
+        const lanes t85 = t81 * lanes_select(t34, t61, t44) + t82 * (t16 + d_v3 * t31);
+        const lanes t87 = t81 * lanes_select(t34, t64, t43) + t82 * (t33 + t86);
+        const lanes t88 = t81 * lanes_select(t34, t62, t38 * (t40 * t40));
+        const lanes t89 = t81 * lanes_select(t34, t63, t46) + t82 * (t87 + d_v3 * t85);
+        const lanes t90 = t0 * t36;
+        const lanes t91 = t90 * (t82 * (d_v3 * (t82 * (t83 - t31) - t84) - t85) - t88);
+        const lanes t92 = t36 * lanes_select(t34, 0.5 + d_v3 * (t64 + t63), t45) + t91;
+        const lanes t93 = d_v2 * t36;
+        const lanes t94 = t93 * t89;
+        const lanes t95 = d_v0 * t92 + d_v1 * t94;
+        const lanes t96 = t36 * lanes_select(t34, 1.0 + d_v3 * t65, t41) - t90 * t87;
+        const lanes t103 = d_v0 * t94 - d_v1 * t92;
+        const lanes t104 = t93 * (t81 * lanes_select(t34, t65, t42) + t82 * (t12 + t98));
+        out_D_d[0] = t96;
+        out_D_d[1] = t104;
+        out_D_d[2] = t103;
+        out_D_d[3] = t95;
+        out_D_d[4] = -t104;
+        out_D_d[5] = t96;
+        out_D_d[6] = t95;
+        out_D_d[7] = -t103;
+        out_D_d[8] = lanes_of(0.0);
+        out_D_d[9] = lanes_of(0.0);
+        out_D_d[10] = lanes_of(1.0);
+        out_D_d[11] = lanes_of(0.0);
+        out_D_d[12] = lanes_of(0.0);
+        out_D_d[13] = lanes_of(0.0);
+        out_D_d[14] = lanes_of(0.0);
+        out_D_d[15] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -225,14 +228,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 16, n, k);
 }
 
-int liegen_groups_sim2_exp_batch(
+LANES_WHOLE int liegen_groups_sim2_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_d.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 21 : 5);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -251,16 +255,14 @@ int liegen_groups_sim2_exp_batch(
             }
             liegen_groups_load(d, 4, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
+                block_jacobians(d_lanes, out_lanes, out_D_d_lanes, want_out_D_d);
             }
             if (!jacobians) {
                 block_value(d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 5, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_d, 16, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_d) liegen_groups_store(out_D_d, 16, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_d_pen);

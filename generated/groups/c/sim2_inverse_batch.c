@@ -32,7 +32,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -41,29 +42,31 @@ static void block_jacobians(
     const lanes x_scale = x[4];
     const lanes t0 = -x_c;
     const lanes t1 = 1.0 / x_scale;
-    const lanes t2 = x_scale * t0;
-    const lanes t3 = x_s * x_scale;
     out[0] = x_c;
     out[1] = -x_s;
     out[2] = (x_x * t0 - x_s * x_y) * t1;
     out[3] = t1 * (x_y * t0 + x_s * x_x);
     out[4] = t1;
-    out_D_x[0] = t2;
-    out_D_x[1] = t3;
-    out_D_x[2] = -x_y;
-    out_D_x[3] = x_x;
-    out_D_x[4] = -t3;
-    out_D_x[5] = t2;
-    out_D_x[6] = x_x;
-    out_D_x[7] = x_y;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(-1.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(-1.0);
+    if (want_out_D_x) {
+        const lanes t2 = x_scale * t0;
+        const lanes t3 = x_s * x_scale;
+        out_D_x[0] = t2;
+        out_D_x[1] = t3;
+        out_D_x[2] = -x_y;
+        out_D_x[3] = x_x;
+        out_D_x[4] = -t3;
+        out_D_x[5] = t2;
+        out_D_x[6] = x_x;
+        out_D_x[7] = x_y;
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(-1.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(-1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -79,14 +82,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 16, n, k);
 }
 
-int liegen_groups_sim2_inverse_batch(
+LANES_WHOLE int liegen_groups_sim2_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 21 : 5);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -105,16 +109,14 @@ int liegen_groups_sim2_inverse_batch(
             }
             liegen_groups_load(x, 5, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 5, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

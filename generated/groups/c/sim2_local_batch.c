@@ -25,7 +25,7 @@ static void block_value(
     const lanes y_x = y[2];
     const lanes y_y = y[3];
     const lanes y_scale = y[4];
-    const lanes t0 = lanes_atan2(x_c * y_s - x_s * y_c, x_c * y_c + x_s * y_s);
+    const lanes t0 = lanes_atan2(x_c * y_s - x_s * y_c, x_c * y_c + y_s * x_s);
     const lanes t1 = t0 * t0;
     const lanes t2 = t1 * 0.25;
     const lanes_mask t3 = t2 < 8.673617379884035e-19;
@@ -50,44 +50,44 @@ static void block_value(
     const lanes t23 = lanes_select(t17, t22, (1.0 - t11 * t10) * t14);
     const lanes t24 = 1.0 / x_scale;
     const lanes t25 = lanes_log(y_scale * t24);
-    const lanes_mask t26 = lanes_abs(t25) <= 2.75;
-    const lanes t27 = lanes_select(t26, lanes_of(2.75), t25);
-    const lanes t28 = lanes_exp(t25);
-    const lanes t29 = t25 * (t25 * (-8.930560564422333e-22) + 2.0567783710503175e-20);
-    const lanes t30 = t25 * (t29 - 4.1178635428421474e-19) + 8.212278817078935e-18;
-    const lanes t31 = t25 * (t25 * t30 - 1.561797933076898e-16) + 2.8114690303671545e-15;
-    const lanes t32 = t25 * (t25 * t31 - 4.779485737082404e-14) + 7.647165960397453e-13;
-    const lanes t33 = t25 * (t25 * t32 - 1.1470745308538233e-11) + 1.6059043692023794e-10;
-    const lanes t34 = t25 * (t25 * t33 - 2.0876756992690708e-09) + 2.5052108389124404e-08;
-    const lanes t35 = t25 * (t25 * t34 - 2.755731922395698e-07) + 2.7557319223944413e-06;
-    const lanes t36 = t25 * (t25 * t35 - 2.4801587301587247e-05) + 0.00019841269841270012;
-    const lanes t37 = t25 * (t25 * t36 - 0.001388888888888889) + 0.008333333333333333;
-    const lanes t38 = 0.041666666666666664 - t25 * t37;
-    const lanes t39 = 1.0 / t27;
-    const lanes t40 = (2.0 - t27 + (-2.0 - t27) / t28) * (t39 * (t39 * t39));
-    const lanes t41 = t38 + (0.041666666666666664 + t25 * (t37 * 4.0 - t38 - t37));
-    const lanes t42 = 0.5 + t25 * (t25 * t38 - 0.16666666666666666);
-    const lanes t43 = (1.0 + (-1.0 / t28)) * t39;
-    const lanes t44 = lanes_select(t26, 1.0 - t25 * t42, t43);
-    const lanes t45 = t15 * lanes_select(t26, t25 * t41 - 0.16666666666666666, t40);
+    const lanes t26 = t25 * (t25 * 8.930560564422333e-22 - 2.0567783710503175e-20);
+    const lanes t27 = t25 * (t26 + 4.1178635428421474e-19) - 8.212278817078935e-18;
+    const lanes t28 = t25 * (t25 * t27 + 1.561797933076898e-16) - 2.8114690303671545e-15;
+    const lanes t29 = t25 * (t25 * t28 + 4.779485737082404e-14) - 7.647165960397453e-13;
+    const lanes t30 = t25 * (t25 * t29 + 1.1470745308538233e-11) - 1.6059043692023794e-10;
+    const lanes t31 = t25 * (t25 * t30 + 2.0876756992690708e-09) - 2.5052108389124404e-08;
+    const lanes t32 = t25 * (t25 * t31 + 2.755731922395698e-07) - 2.7557319223944413e-06;
+    const lanes t33 = t25 * (t25 * t32 + 2.4801587301587247e-05) - 0.00019841269841270012;
+    const lanes t34 = t25 * (t25 * t33 + 0.001388888888888889) - 0.008333333333333333;
+    const lanes t35 = 0.041666666666666664 + t25 * t34;
+    const lanes_mask t36 = lanes_abs(t25) <= 2.75;
+    const lanes t37 = lanes_select(t36, lanes_of(2.75), t25);
+    const lanes t38 = lanes_exp(t25);
+    const lanes t39 = t25 * (t34 * (-4.0) + (t34 - t35)) + (0.041666666666666664 + t35);
+    const lanes t40 = 1.0 / t37;
+    const lanes t41 = ((-2.0 - t37) / t38 + (2.0 - t37)) * (t40 * (t40 * t40));
+    const lanes t42 = 0.5 + t25 * (t25 * t35 - 0.16666666666666666);
+    const lanes t43 = (1.0 + (-1.0 / t38)) * t40;
+    const lanes t44 = lanes_select(t36, 1.0 - t25 * t42, t43);
+    const lanes t45 = t15 * lanes_select(t36, t25 * t39 - 0.16666666666666666, t41);
     const lanes t46 = t25 * t25;
-    const lanes_mask t47 = t46 + t1 < 8.673617379884035e-19;
+    const lanes_mask t47 = t1 + t46 < 8.673617379884035e-19;
     const lanes t48 = lanes_select(t47, lanes_of(8.673617379884035e-19), t1);
     const lanes t49 = t46 + t48;
     const lanes t50 = t48 / t49;
     const lanes t51 = t46 / t49;
     const lanes t52 = t50 * (2.0 * lanes_select(t17, t16, t14 * (0.5 - t15)) - t23);
-    const lanes t53 = t28 * t44;
-    const lanes t54 = t51 * lanes_select(t26, t42, t39 * (1.0 - t43));
+    const lanes t53 = t38 * t44;
+    const lanes t54 = t51 * lanes_select(t36, t42, t40 * (1.0 - t43));
     const lanes t55 = t51 * (t44 * t53) + t13 * t50;
-    const lanes t56 = y_y - x_y;
-    const lanes t57 = y_x - x_x;
+    const lanes t56 = x_y - y_y;
+    const lanes t57 = x_x - y_x;
     const lanes t58 = t0 * ((t54 + t50 * (t15 - t25 * t23)) / t55);
     const lanes t59 = t24 * (x_c * t57 + x_s * t56);
-    const lanes t60 = t24 * (x_c * t56 - x_s * t57);
+    const lanes t60 = t24 * (x_s * t57 - x_c * t56);
     const lanes t61 = 1.0 / t53 + t1 * ((t51 * (t45 / t44) + t52) / t55);
-    out[0] = t61 * t59 + t58 * t60;
-    out[1] = t61 * t60 - t59 * t58;
+    out[0] = t58 * t60 - t61 * t59;
+    out[1] = t61 * t60 + t59 * t58;
     out[2] = t0;
     out[3] = t25;
 }
@@ -98,7 +98,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -227,57 +229,61 @@ static void block_jacobians(
     const lanes t115 = t114 + t110 * (t105 + 0.5 * (t85 * (t81 + (-4.0 * t26))));
     const lanes t116 = t28 * t115;
     const lanes t117 = t0 * (t111 - t115);
-    const lanes t118 = 0.5 + t116;
     const lanes t119 = t113 * t117;
-    const lanes t120 = t119 + t112 * t118;
-    const lanes t121 = 0.5 - t116;
-    const lanes t122 = t112 * t121 - t119;
     const lanes t123 = t15 * (t114 * t110) - 1.0 - t49 * t97;
     const lanes t124 = t28 * 0.5;
-    const lanes t125 = t124 - t123;
-    const lanes t126 = t123 + t124;
     const lanes t127 = t28 * t111;
     const lanes t128 = t112 * t117;
-    const lanes t129 = t128 - t113 * t118;
-    const lanes t130 = t128 + t113 * t121;
-    const lanes t131 = t0 * (0.5 + t127);
-    const lanes t132 = t0 * (0.5 - t127);
     out[0] = -t112;
     out[1] = t113;
     out[2] = t0;
     out[3] = t28;
-    out_D_x[0] = t126;
-    out_D_x[1] = -t132;
-    out_D_x[2] = t130;
-    out_D_x[3] = t122;
-    out_D_x[4] = t132;
-    out_D_x[5] = t126;
-    out_D_x[6] = t122;
-    out_D_x[7] = -t130;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(-1.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(-1.0);
-    out_D_y[0] = t125;
-    out_D_y[1] = -t131;
-    out_D_y[2] = -t129;
-    out_D_y[3] = t120;
-    out_D_y[4] = t131;
-    out_D_y[5] = t125;
-    out_D_y[6] = t120;
-    out_D_y[7] = t129;
-    out_D_y[8] = lanes_of(0.0);
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(1.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = lanes_of(0.0);
-    out_D_y[15] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t121 = 0.5 - t116;
+        const lanes t122 = t112 * t121 - t119;
+        const lanes t126 = t123 + t124;
+        const lanes t130 = t128 + t113 * t121;
+        const lanes t132 = t0 * (0.5 - t127);
+        out_D_x[0] = t126;
+        out_D_x[1] = -t132;
+        out_D_x[2] = t130;
+        out_D_x[3] = t122;
+        out_D_x[4] = t132;
+        out_D_x[5] = t126;
+        out_D_x[6] = t122;
+        out_D_x[7] = -t130;
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(-1.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(-1.0);
+    }
+    if (want_out_D_y) {
+        const lanes t118 = 0.5 + t116;
+        const lanes t120 = t119 + t112 * t118;
+        const lanes t125 = t124 - t123;
+        const lanes t129 = t128 - t113 * t118;
+        const lanes t131 = t0 * (0.5 + t127);
+        out_D_y[0] = t125;
+        out_D_y[1] = -t131;
+        out_D_y[2] = -t129;
+        out_D_y[3] = t120;
+        out_D_y[4] = t131;
+        out_D_y[5] = t125;
+        out_D_y[6] = t120;
+        out_D_y[7] = t129;
+        out_D_y[8] = lanes_of(0.0);
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(1.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = lanes_of(0.0);
+        out_D_y[15] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -297,7 +303,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 16, n, k);
 }
 
-int liegen_groups_sim2_local_batch(
+LANES_WHOLE int liegen_groups_sim2_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -306,7 +312,9 @@ int liegen_groups_sim2_local_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 36 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -329,17 +337,16 @@ int liegen_groups_sim2_local_batch(
             liegen_groups_load(x, 5, k, count, x_lanes);
             liegen_groups_load(y, 5, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 16, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 16, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -43,40 +43,40 @@ static void block_value(
     const lanes t22 = 0.16666666666666666 + t1 * (t21 - 0.008333333333333333);
     const lanes t23 = lanes_select(t17, t22, (1.0 - t11 * t10) * t14);
     const lanes t24 = lanes_log(x_scale);
-    const lanes_mask t25 = lanes_abs(t24) <= 2.75;
-    const lanes t26 = lanes_select(t25, lanes_of(2.75), t24);
-    const lanes t27 = lanes_exp(t24);
-    const lanes t28 = t24 * (t24 * (-8.930560564422333e-22) + 2.0567783710503175e-20);
-    const lanes t29 = t24 * (t28 - 4.1178635428421474e-19) + 8.212278817078935e-18;
-    const lanes t30 = t24 * (t24 * t29 - 1.561797933076898e-16) + 2.8114690303671545e-15;
-    const lanes t31 = t24 * (t24 * t30 - 4.779485737082404e-14) + 7.647165960397453e-13;
-    const lanes t32 = t24 * (t24 * t31 - 1.1470745308538233e-11) + 1.6059043692023794e-10;
-    const lanes t33 = t24 * (t24 * t32 - 2.0876756992690708e-09) + 2.5052108389124404e-08;
-    const lanes t34 = t24 * (t24 * t33 - 2.755731922395698e-07) + 2.7557319223944413e-06;
-    const lanes t35 = t24 * (t24 * t34 - 2.4801587301587247e-05) + 0.00019841269841270012;
-    const lanes t36 = t24 * (t24 * t35 - 0.001388888888888889) + 0.008333333333333333;
-    const lanes t37 = 0.041666666666666664 - t24 * t36;
-    const lanes t38 = 1.0 / t26;
-    const lanes t39 = (2.0 - t26 + (-2.0 - t26) / t27) * (t38 * (t38 * t38));
-    const lanes t40 = t37 + (0.041666666666666664 + t24 * (t36 * 4.0 - t37 - t36));
-    const lanes t41 = 0.5 + t24 * (t24 * t37 - 0.16666666666666666);
-    const lanes t42 = (1.0 + (-1.0 / t27)) * t38;
-    const lanes t43 = lanes_select(t25, 1.0 - t24 * t41, t42);
-    const lanes t44 = t15 * lanes_select(t25, t24 * t40 - 0.16666666666666666, t39);
+    const lanes t25 = t24 * (t24 * 8.930560564422333e-22 - 2.0567783710503175e-20);
+    const lanes t26 = t24 * (t25 + 4.1178635428421474e-19) - 8.212278817078935e-18;
+    const lanes t27 = t24 * (t24 * t26 + 1.561797933076898e-16) - 2.8114690303671545e-15;
+    const lanes t28 = t24 * (t24 * t27 + 4.779485737082404e-14) - 7.647165960397453e-13;
+    const lanes t29 = t24 * (t24 * t28 + 1.1470745308538233e-11) - 1.6059043692023794e-10;
+    const lanes t30 = t24 * (t24 * t29 + 2.0876756992690708e-09) - 2.5052108389124404e-08;
+    const lanes t31 = t24 * (t24 * t30 + 2.755731922395698e-07) - 2.7557319223944413e-06;
+    const lanes t32 = t24 * (t24 * t31 + 2.4801587301587247e-05) - 0.00019841269841270012;
+    const lanes t33 = t24 * (t24 * t32 + 0.001388888888888889) - 0.008333333333333333;
+    const lanes t34 = 0.041666666666666664 + t24 * t33;
+    const lanes_mask t35 = lanes_abs(t24) <= 2.75;
+    const lanes t36 = lanes_select(t35, lanes_of(2.75), t24);
+    const lanes t37 = lanes_exp(t24);
+    const lanes t38 = t24 * (t33 * (-4.0) + (t33 - t34)) + (0.041666666666666664 + t34);
+    const lanes t39 = 1.0 / t36;
+    const lanes t40 = ((-2.0 - t36) / t37 + (2.0 - t36)) * (t39 * (t39 * t39));
+    const lanes t41 = 0.5 + t24 * (t24 * t34 - 0.16666666666666666);
+    const lanes t42 = (1.0 + (-1.0 / t37)) * t39;
+    const lanes t43 = lanes_select(t35, 1.0 - t24 * t41, t42);
+    const lanes t44 = t15 * lanes_select(t35, t24 * t38 - 0.16666666666666666, t40);
     const lanes t45 = t24 * t24;
-    const lanes_mask t46 = t45 + t1 < 8.673617379884035e-19;
+    const lanes_mask t46 = t1 + t45 < 8.673617379884035e-19;
     const lanes t47 = lanes_select(t46, lanes_of(8.673617379884035e-19), t1);
     const lanes t48 = t45 + t47;
     const lanes t49 = t47 / t48;
     const lanes t50 = t45 / t48;
     const lanes t51 = t49 * (2.0 * lanes_select(t17, t16, t14 * (0.5 - t15)) - t23);
-    const lanes t52 = t27 * t43;
-    const lanes t53 = t50 * lanes_select(t25, t41, t38 * (1.0 - t42));
+    const lanes t52 = t37 * t43;
+    const lanes t53 = t50 * lanes_select(t35, t41, t39 * (1.0 - t42));
     const lanes t54 = t50 * (t43 * t52) + t13 * t49;
     const lanes t55 = t0 * ((t53 + t49 * (t15 - t24 * t23)) / t54);
     const lanes t56 = 1.0 / t52 + t1 * ((t50 * (t44 / t43) + t51) / t54);
     out[0] = x_x * t56 + x_y * t55;
-    out[1] = x_y * t56 - x_x * t55;
+    out[1] = t56 * x_y - x_x * t55;
     out[2] = t0;
     out[3] = t24;
 }
@@ -85,7 +85,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -110,50 +111,18 @@ static void block_jacobians(
     const lanes t16 = 0.041666666666666664 + t1 * t8;
     const lanes_mask t17 = t1 < 10.0;
     const lanes t18 = lanes_select(t17, t16, t13 * (0.5 - t15));
-    const lanes_mask t19 = t1 <= 10.0;
-    const lanes t20 = lanes_select(t19, lanes_of(10.0), t1);
-    const lanes t21 = (0.041666666666666664 - t18) / t20;
-    const lanes t22 = t1 * (t1 * 8.238352127228608e-22 - 4.09903975815473e-19);
-    const lanes t23 = t1 * (t22 + 1.5618190715606994e-16) - 4.7794722734271995e-14;
-    const lanes t24 = t1 * (t1 * t23 + 1.1470745466476364e-11) - 2.0876756986572595e-09;
-    const lanes t25 = t1 * (t1 * t24 + 2.7557319223993533e-07) - 2.4801587301587488e-05;
-    const lanes t26 = lanes_select(t19, 0.001388888888888889 + t1 * t25, t21);
     const lanes t27 = t12 * t11;
-    const lanes t28 = t13 * (t13 * (t27 + 0.16666666666666666 * (t1 - 6.0)));
     const lanes t29 = t1 * (t1 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t30 = t1 * (t1 * (t29 + 2.811147137722584e-15) - 7.647145552981236e-13);
     const lanes t31 = t1 * (t1 * (t30 + 1.605904321180956e-10) - 2.505210837344028e-08);
     const lanes t32 = t1 * (t1 * (t31 + 2.755731922387232e-06) - 0.0001984126984126945);
     const lanes t33 = 0.008333333333333333 + t32;
-    const lanes t34 = lanes_select(t17, t33, t28);
     const lanes t35 = 0.16666666666666666 - t1 * t33;
     const lanes t36 = lanes_select(t17, t35, (1.0 - t27) * t13);
     const lanes t37 = lanes_log(x_scale);
-    const lanes t38 = lanes_exp(t37);
-    const lanes t39 = 1.0 / t38;
-    const lanes t40 = t37 * t37;
-    const lanes_mask t41 = t40 <= 20.0;
-    const lanes t42 = 1.0 / lanes_select(t41, lanes_of(4.47213595499958), t37);
-    const lanes t43 = t42 * t42;
-    const lanes t44 = t43 * (1.0 + (t38 + t39) * (-0.5));
-    const lanes t45 = (1.0 + t42 * (0.5 * (t39 - t38))) * t43;
-    const lanes t46 = t43 * (-0.5 - t44);
-    const lanes t47 = t40 * (3.4565955041241694e-26 + t40 * 3.6326829868633628e-28);
-    const lanes t48 = 1.9532920807021222e-20 + t40 * (4.013242371241884e-23 + t47);
-    const lanes t49 = 2.8114496129200326e-15 + t40 * (8.221323631272194e-18 + t40 * t48);
-    const lanes t50 = 1.6059043812002977e-10 + t40 * (7.647164280237662e-13 + t40 * t49);
-    const lanes t51 = 2.755731922397618e-06 + t40 * (2.5052108386111277e-08 + t40 * t50);
-    const lanes t52 = 0.008333333333333333 + t40 * (0.00019841269841269904 + t40 * t51);
-    const lanes t53 = lanes_select(t41, -0.16666666666666666 - t40 * t52, t45);
-    const lanes t54 = t40 * (1.7099778208689592e-26 + t40 * (-1.289524317228906e-28));
-    const lanes t55 = t40 * (9.085596999052415e-22 + t40 * (9.134987684433098e-25 + t54));
-    const lanes t56 = t40 * (1.561955279397849e-16 + t40 * (4.107137456405439e-19 + t55));
-    const lanes t57 = 1.1470745706110347e-11 + t40 * (4.779474897505248e-14 + t56);
-    const lanes t58 = 2.7557319224027605e-07 + t40 * (2.087675698497951e-09 + t40 * t57);
-    const lanes t59 = 0.001388888888888889 + t40 * (2.480158730158703e-05 + t40 * t58);
-    const lanes t60 = 0.041666666666666664 + t40 * t59;
-    const lanes t61 = lanes_select(t41, t60, t46);
-    const lanes t62 = lanes_select(t41, -0.5 - t40 * t60, t44);
+    const lanes t38 = t37 * t37;
+    const lanes t41 = lanes_exp(t37);
+    const lanes t42 = 1.0 / t41;
     const lanes t63 = t37 * (t37 * 8.930560564422333e-22 - 2.0567783710503175e-20);
     const lanes t64 = t37 * (t63 + 4.1178635428421474e-19) - 8.212278817078935e-18;
     const lanes t65 = t37 * (t37 * t64 + 1.561797933076898e-16) - 2.8114690303671545e-15;
@@ -168,66 +137,100 @@ static void block_jacobians(
     const lanes t74 = lanes_select(t73, lanes_of(2.75), t37);
     const lanes t75 = t37 * (t71 * (-4.0) + (t71 - t72)) + (0.041666666666666664 + t72);
     const lanes t76 = 1.0 / t74;
-    const lanes t77 = (t39 * (-2.0 - t74) + (2.0 - t74)) * (t76 * (t76 * t76));
+    const lanes t77 = (t42 * (-2.0 - t74) + (2.0 - t74)) * (t76 * (t76 * t76));
     const lanes t78 = 0.5 + t37 * (t37 * t72 - 0.16666666666666666);
-    const lanes t79 = (1.0 - t39) * t76;
+    const lanes t79 = (1.0 - t42) * t76;
     const lanes t80 = lanes_select(t73, 1.0 - t37 * t78, t79);
-    const lanes_mask t81 = t1 + t40 < 8.673617379884035e-19;
+    const lanes_mask t81 = t1 + t38 < 8.673617379884035e-19;
     const lanes t82 = lanes_select(t81, lanes_of(8.673617379884035e-19), t1);
-    const lanes t83 = t40 + t82;
+    const lanes t83 = t38 + t82;
     const lanes t84 = t82 / t83;
-    const lanes t85 = t40 / t83;
-    const lanes t86 = t85 * lanes_select(t41, t59, t43 * (t46 - 0.041666666666666664));
-    const lanes t87 = t86 + t84 * t26;
-    const lanes t88 = t85 * t61 + t84 * t18;
-    const lanes t89 = t85 * lanes_select(t41, t52, t43 * (-0.16666666666666666 - t45));
-    const lanes t90 = t36 + (-2.0 * t18);
-    const lanes t91 = -0.5 / t62;
-    const lanes t92 = (-2.0 * t61 - t53) * t91;
-    const lanes t93 = 0.5 / t15;
-    const lanes t94 = t15 * lanes_select(t73, t37 * t75 - 0.16666666666666666, t77);
+    const lanes t85 = t38 / t83;
+    const lanes t90 = t15 * lanes_select(t73, t37 * t75 - 0.16666666666666666, t77);
+    const lanes t91 = t36 + (-2.0 * t18);
     const lanes t95 = t85 * lanes_select(t73, t78, t76 * (1.0 - t79));
     const lanes t96 = t14 * t84;
-    const lanes t97 = t38 * t80;
-    const lanes t98 = t85 * (t87 + t88 * (t92 - t90 * t93));
+    const lanes t97 = t41 * t80;
     const lanes t99 = t85 * (t80 * t97) + t96;
-    const lanes t100 = t1 * 2.0;
-    const lanes t101 = (t90 * t88 + t15 * (2.0 * t87 - t84 * t34 - t89)) * t100;
-    const lanes t102 = 1.0 / t97 + t1 * ((t85 * (t94 / t80) - t84 * t90) / t99);
-    const lanes t103 = 1.0 / (t96 + (-2.0 * (t85 * t62)));
-    const lanes t104 = t100 * t103;
-    const lanes t105 = t103 * (t84 * t36 - t85 * t53);
+    const lanes t102 = 1.0 / t97 + t1 * ((t85 * (t90 / t80) - t84 * t91) / t99);
     const lanes t106 = t0 * ((t95 + t84 * (t15 - t37 * t36)) / t99);
     const lanes t107 = x_x * t102 + x_y * t106;
     const lanes t108 = t102 * x_y - x_x * t106;
-    const lanes t109 = t92 + t93 * (t91 * t101);
-    const lanes t110 = t109 + t104 * (t98 + (t34 + (-4.0 * t26)) * (0.5 * t84));
-    const lanes t111 = 0.5 + t37 * t110;
-    const lanes t112 = t0 * (t105 - t110);
-    const lanes t113 = t108 * t112 - t107 * t111;
-    const lanes t114 = t40 * t92 + (1.0 + t37 * 0.5 - t104 * (t15 * t109));
-    const lanes t115 = t107 * t112 + t108 * t111;
-    const lanes t116 = t0 * (0.5 + t37 * t105);
     out[0] = t107;
     out[1] = t108;
     out[2] = t0;
     out[3] = t37;
-    out_D_x[0] = t114;
-    out_D_x[1] = -t116;
-    out_D_x[2] = t115;
-    out_D_x[3] = t113;
-    out_D_x[4] = t116;
-    out_D_x[5] = t114;
-    out_D_x[6] = t113;
-    out_D_x[7] = -t115;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(1.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes_mask t19 = t1 <= 10.0;
+        const lanes t20 = lanes_select(t19, lanes_of(10.0), t1);
+        const lanes t21 = (0.041666666666666664 - t18) / t20;
+        const lanes t22 = t1 * (t1 * 8.238352127228608e-22 - 4.09903975815473e-19);
+        const lanes t23 = t1 * (t22 + 1.5618190715606994e-16) - 4.7794722734271995e-14;
+        const lanes t24 = t1 * (t1 * t23 + 1.1470745466476364e-11) - 2.0876756986572595e-09;
+        const lanes t25 = t1 * (t1 * t24 + 2.7557319223993533e-07) - 2.4801587301587488e-05;
+        const lanes t26 = lanes_select(t19, 0.001388888888888889 + t1 * t25, t21);
+        const lanes t28 = (t27 + 0.16666666666666666 * (t1 - 6.0)) * (t13 * t13);
+        const lanes t34 = lanes_select(t17, t33, t28);
+        const lanes_mask t39 = t38 <= 20.0;
+        const lanes t40 = 1.0 / lanes_select(t39, lanes_of(4.47213595499958), t37);
+        const lanes t43 = t40 * t40;
+        const lanes t44 = t43 * (1.0 + (t41 + t42) * (-0.5));
+        const lanes t45 = (1.0 + (t42 - t41) * (0.5 * t40)) * t43;
+        const lanes t46 = t43 * (-0.5 - t44);
+        const lanes t47 = t38 * (3.4565955041241694e-26 + t38 * 3.6326829868633628e-28);
+        const lanes t48 = 1.9532920807021222e-20 + t38 * (4.013242371241884e-23 + t47);
+        const lanes t49 = 2.8114496129200326e-15 + t38 * (8.221323631272194e-18 + t38 * t48);
+        const lanes t50 = 1.6059043812002977e-10 + t38 * (7.647164280237662e-13 + t38 * t49);
+        const lanes t51 = 2.755731922397618e-06 + t38 * (2.5052108386111277e-08 + t38 * t50);
+        const lanes t52 = 0.008333333333333333 + t38 * (0.00019841269841269904 + t38 * t51);
+        const lanes t53 = lanes_select(t39, -0.16666666666666666 - t38 * t52, t45);
+        const lanes t54 = t38 * (1.7099778208689592e-26 + t38 * (-1.289524317228906e-28));
+        const lanes t55 = t38 * (9.085596999052415e-22 + t38 * (9.134987684433098e-25 + t54));
+        const lanes t56 = t38 * (1.561955279397849e-16 + t38 * (4.107137456405439e-19 + t55));
+        const lanes t57 = 1.1470745706110347e-11 + t38 * (4.779474897505248e-14 + t56);
+        const lanes t58 = 2.7557319224027605e-07 + t38 * (2.087675698497951e-09 + t38 * t57);
+        const lanes t59 = 0.001388888888888889 + t38 * (2.480158730158703e-05 + t38 * t58);
+        const lanes t60 = 0.041666666666666664 + t38 * t59;
+        const lanes t61 = lanes_select(t39, t60, t46);
+        const lanes t62 = lanes_select(t39, -0.5 - t38 * t60, t44);
+        const lanes t86 = t85 * t61 + t84 * t18;
+        const lanes t87 = t85 * lanes_select(t39, t59, t43 * (t46 - 0.041666666666666664));
+        const lanes t88 = t87 + t84 * t26;
+        const lanes t89 = t85 * lanes_select(t39, t52, t43 * (-0.16666666666666666 - t45));
+        const lanes t92 = -0.5 / t62;
+        const lanes t93 = (-2.0 * t61 - t53) * t92;
+        const lanes t94 = 0.5 / t15;
+        const lanes t98 = t85 * (t88 + t86 * (t93 - t91 * t94));
+        const lanes t100 = t1 * 2.0;
+        const lanes t101 = t91 * t86 + t15 * (2.0 * t88 - (t89 + t84 * t34));
+        const lanes t103 = 1.0 / (t96 + (-2.0 * (t85 * t62)));
+        const lanes t104 = t100 * t103;
+        const lanes t105 = t103 * (t84 * t36 - t85 * t53);
+        const lanes t109 = t93 + t101 * (t94 * (t92 * t100));
+        const lanes t110 = t109 + t104 * (t98 + (t34 + (-4.0 * t26)) * (0.5 * t84));
+        const lanes t111 = 0.5 + t37 * t110;
+        const lanes t112 = t0 * (t105 - t110);
+        const lanes t113 = t108 * t112 - t107 * t111;
+        const lanes t114 = t38 * t93 + (1.0 + t37 * 0.5) - t109 * (t15 * t104);
+        const lanes t115 = t107 * t112 + t108 * t111;
+        const lanes t116 = t0 * (0.5 + t37 * t105);
+        out_D_x[0] = t114;
+        out_D_x[1] = -t116;
+        out_D_x[2] = t115;
+        out_D_x[3] = t113;
+        out_D_x[4] = t116;
+        out_D_x[5] = t114;
+        out_D_x[6] = t113;
+        out_D_x[7] = -t115;
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(1.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -243,14 +246,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 16, n, k);
 }
 
-int liegen_groups_sim2_log_batch(
+LANES_WHOLE int liegen_groups_sim2_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 20 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -269,16 +273,14 @@ int liegen_groups_sim2_log_batch(
             }
             liegen_groups_load(x, 5, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

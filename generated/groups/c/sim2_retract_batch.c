@@ -88,7 +88,9 @@ static void block_jacobians(
     const lanes *d,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_x,
+    int want_out_D_d)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -107,7 +109,7 @@ static void block_jacobians(
     const lanes t6 = lanes_sqrt(t5);
     lanes t7, t8; lanes_sincos(t6, &t7, &t8);
     const lanes t9 = t7 / t6;
-    const lanes t10 = 0.5 * (t9 * t9);
+    const lanes t10 = t9 * (0.5 * t9);
     const lanes t11 = 0.25 / t5;
     const lanes t12 = t2 * (t2 * 3.727119152236193e-19 - 1.5548246938628861e-16);
     const lanes t13 = t2 * (t12 + 4.7787633808715973e-14) - 1.1470703650540261e-11;
@@ -157,97 +159,101 @@ static void block_jacobians(
     const lanes t57 = t56 * (d_v2 * t35);
     const lanes t58 = d_v0 * t54 - d_v1 * t57;
     const lanes t59 = d_v0 * t57 + t54 * d_v1;
-    const lanes t60 = t1 * t36;
-    const lanes t61 = t0 * t36;
-    const lanes t62 = t36 * (t1 * t59 - t0 * t58);
-    const lanes t63 = t36 * (t1 * t58 + t0 * t59);
-    const lanes t64 = lanes_select(t33, lanes_of(-2.75), d_v3);
-    const lanes t65 = -1.0 / t64;
-    const lanes t66 = lanes_exp(-d_v3);
-    const lanes t67 = 1.0 / t66;
-    const lanes t68 = (1.0 - t67) * t65;
-    const lanes t69 = t65 * (1.0 - t68);
-    const lanes t70 = t65 * (0.5 - t69);
-    const lanes t71 = 4.1178635428421474e-19 + d_v3 * (t39 + 2.0567783710503175e-20);
-    const lanes t72 = 1.561797933076898e-16 + d_v3 * (8.212278817078935e-18 + d_v3 * t71);
-    const lanes t73 = 4.779485737082404e-14 + d_v3 * (2.8114690303671545e-15 + d_v3 * t72);
-    const lanes t74 = 1.1470745308538233e-11 + d_v3 * (7.647165960397453e-13 + d_v3 * t73);
-    const lanes t75 = 2.0876756992690708e-09 + d_v3 * (1.6059043692023794e-10 + d_v3 * t74);
-    const lanes t76 = 2.755731922395698e-07 + d_v3 * (2.5052108389124404e-08 + d_v3 * t75);
-    const lanes t77 = 2.4801587301587247e-05 + d_v3 * (2.7557319223944413e-06 + d_v3 * t76);
-    const lanes t78 = 0.001388888888888889 + d_v3 * (0.00019841269841270012 + d_v3 * t77);
-    const lanes t79 = 0.008333333333333333 + d_v3 * t78;
-    const lanes t80 = 0.041666666666666664 + d_v3 * t79;
-    const lanes t81 = 0.16666666666666666 + d_v3 * t80;
-    const lanes t82 = t50 * lanes_select(t33, t81, t70) + t32 * (t27 + t19);
-    const lanes t83 = t2 * t66;
-    const lanes t84 = 0.5 + d_v3 * t81;
-    const lanes t85 = t66 * lanes_select(t33, 1.0 + d_v3 * t84, t68) - t83 * t82;
-    const lanes t86 = d_v2 * t66;
-    const lanes t87 = t86 * (t50 * lanes_select(t33, t84, t69) + t32 * (t10 + t55));
-    const lanes t88 = t11 * (t11 * (t20 + 0.16666666666666666 * (t2 - 6.0)));
-    const lanes t89 = lanes_select(t17, t25, t88);
-    const lanes t90 = t65 * (0.16666666666666666 - t70);
-    const lanes t91 = t50 * lanes_select(t33, t80, t90) + t32 * (t18 + d_v3 * t89);
-    const lanes t92 = t65 * t65;
-    const lanes t93 = (t67 * (2.0 - t64) + (-2.0 - t64)) * (t65 * t92);
-    const lanes t94 = 0.041666666666666664 + d_v3 * (t79 * (-4.0) + (t79 + t80));
-    const lanes t95 = 0.16666666666666666 + d_v3 * (t80 + t94);
-    const lanes t96 = t50 * lanes_select(t33, t95, t93) + t32 * (t82 + d_v3 * t91);
-    const lanes t97 = t86 * t96;
-    const lanes_mask t98 = t2 <= 10.0;
-    const lanes t99 = lanes_select(t98, lanes_of(10.0), t2);
-    const lanes t100 = (t18 - 0.041666666666666664) / t99;
-    const lanes t101 = t2 * (t2 * (-8.238352127228608e-22) + 4.09903975815473e-19);
-    const lanes t102 = t2 * (t101 - 1.5618190715606994e-16) + 4.7794722734271995e-14;
-    const lanes t103 = t2 * (t2 * t102 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
-    const lanes t104 = t2 * (t2 * t103 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
-    const lanes t105 = d_v3 * lanes_select(t98, t2 * t104 - 0.001388888888888889, t100);
-    const lanes t106 = t50 * lanes_select(t33, t79, t65 * (0.041666666666666664 - t90));
-    const lanes t107 = t32 * (d_v3 * (t32 * (t105 - t89) - t106) - t91);
-    const lanes t108 = t92 * (t67 * (t64 - 3.0) + (t64 * (2.0 + 0.5 * t64) + 3.0));
-    const lanes t109 = t83 * (t107 - t50 * lanes_select(t33, t94, t92 * t108));
-    const lanes t110 = t92 * (1.0 + t67 * (t64 - 1.0));
-    const lanes t111 = t66 * lanes_select(t33, 0.5 + d_v3 * (t81 + t95), t110) + t109;
-    const lanes t112 = d_v0 * t97 - d_v1 * t111;
-    const lanes t113 = d_v0 * t111 + d_v1 * t97;
     out[0] = x_c * t1 - x_s * t0;
     out[1] = t1 * x_s + x_c * t0;
     out[2] = x_x + x_scale * (x_c * t58 - x_s * t59);
     out[3] = x_y + x_scale * (x_s * t58 + x_c * t59);
     out[4] = x_scale * t35;
-    out_D_x[0] = t60;
-    out_D_x[1] = t61;
-    out_D_x[2] = -t62;
-    out_D_x[3] = t63;
-    out_D_x[4] = -t61;
-    out_D_x[5] = t60;
-    out_D_x[6] = t63;
-    out_D_x[7] = t62;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = lanes_of(0.0);
-    out_D_x[10] = lanes_of(1.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = lanes_of(0.0);
-    out_D_x[15] = lanes_of(1.0);
-    out_D_d[0] = t85;
-    out_D_d[1] = t87;
-    out_D_d[2] = t112;
-    out_D_d[3] = t113;
-    out_D_d[4] = -t87;
-    out_D_d[5] = t85;
-    out_D_d[6] = t113;
-    out_D_d[7] = -t112;
-    out_D_d[8] = lanes_of(0.0);
-    out_D_d[9] = lanes_of(0.0);
-    out_D_d[10] = lanes_of(1.0);
-    out_D_d[11] = lanes_of(0.0);
-    out_D_d[12] = lanes_of(0.0);
-    out_D_d[13] = lanes_of(0.0);
-    out_D_d[14] = lanes_of(0.0);
-    out_D_d[15] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t60 = t1 * t36;
+        const lanes t61 = t0 * t36;
+        const lanes t62 = t36 * (t1 * t59 - t0 * t58);
+        const lanes t63 = t36 * (t1 * t58 + t0 * t59);
+        out_D_x[0] = t60;
+        out_D_x[1] = t61;
+        out_D_x[2] = -t62;
+        out_D_x[3] = t63;
+        out_D_x[4] = -t61;
+        out_D_x[5] = t60;
+        out_D_x[6] = t63;
+        out_D_x[7] = t62;
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = lanes_of(0.0);
+        out_D_x[10] = lanes_of(1.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = lanes_of(0.0);
+        out_D_x[15] = lanes_of(1.0);
+    }
+    if (want_out_D_d) {
+        const lanes t64 = lanes_select(t33, lanes_of(-2.75), d_v3);
+        const lanes t65 = -1.0 / t64;
+        const lanes t66 = lanes_exp(-d_v3);
+        const lanes t67 = 1.0 / t66;
+        const lanes t68 = (1.0 - t67) * t65;
+        const lanes t69 = t65 * (1.0 - t68);
+        const lanes t70 = t65 * (0.5 - t69);
+        const lanes t71 = 4.1178635428421474e-19 + d_v3 * (t39 + 2.0567783710503175e-20);
+        const lanes t72 = 1.561797933076898e-16 + d_v3 * (8.212278817078935e-18 + d_v3 * t71);
+        const lanes t73 = 4.779485737082404e-14 + d_v3 * (2.8114690303671545e-15 + d_v3 * t72);
+        const lanes t74 = 1.1470745308538233e-11 + d_v3 * (7.647165960397453e-13 + d_v3 * t73);
+        const lanes t75 = 2.0876756992690708e-09 + d_v3 * (1.6059043692023794e-10 + d_v3 * t74);
+        const lanes t76 = 2.755731922395698e-07 + d_v3 * (2.5052108389124404e-08 + d_v3 * t75);
+        const lanes t77 = 2.4801587301587247e-05 + d_v3 * (2.7557319223944413e-06 + d_v3 * t76);
+        const lanes t78 = 0.001388888888888889 + d_v3 * (0.00019841269841270012 + d_v3 * t77);
+        const lanes t79 = 0.008333333333333333 + d_v3 * t78;
+        const lanes t80 = 0.041666666666666664 + d_v3 * t79;
+        const lanes t81 = 0.16666666666666666 + d_v3 * t80;
+        const lanes t82 = t50 * lanes_select(t33, t81, t70) + t32 * (t27 + t19);
+        const lanes t83 = t2 * t66;
+        const lanes t84 = 0.5 + d_v3 * t81;
+        const lanes t85 = t66 * lanes_select(t33, 1.0 + d_v3 * t84, t68) - t83 * t82;
+        const lanes t86 = d_v2 * t66;
+        const lanes t87 = t86 * (t50 * lanes_select(t33, t84, t69) + t32 * (t10 + t55));
+        const lanes_mask t88 = t2 <= 10.0;
+        const lanes t89 = lanes_select(t88, lanes_of(10.0), t2);
+        const lanes t90 = (t18 - 0.041666666666666664) / t89;
+        const lanes t91 = t2 * (t2 * (-8.238352127228608e-22) + 4.09903975815473e-19);
+        const lanes t92 = t2 * (t91 - 1.5618190715606994e-16) + 4.7794722734271995e-14;
+        const lanes t93 = t2 * (t2 * t92 - 1.1470745466476364e-11) + 2.0876756986572595e-09;
+        const lanes t94 = t2 * (t2 * t93 - 2.7557319223993533e-07) + 2.4801587301587488e-05;
+        const lanes t95 = d_v3 * lanes_select(t88, t2 * t94 - 0.001388888888888889, t90);
+        const lanes t96 = (t20 + 0.16666666666666666 * (t2 - 6.0)) * (t11 * t11);
+        const lanes t97 = lanes_select(t17, t25, t96);
+        const lanes t98 = t65 * (0.16666666666666666 - t70);
+        const lanes t99 = t50 * lanes_select(t33, t79, t65 * (0.041666666666666664 - t98));
+        const lanes t100 = t50 * lanes_select(t33, t80, t98) + t32 * (t18 + d_v3 * t97);
+        const lanes t101 = t65 * t65;
+        const lanes t102 = t67 * (t64 - 3.0) + (3.0 + t64 * (2.0 + 0.5 * t64));
+        const lanes t103 = 0.041666666666666664 + d_v3 * (t80 + (t79 + t79 * (-4.0)));
+        const lanes t104 = t50 * lanes_select(t33, t103, t102 * (t101 * t101));
+        const lanes t105 = t83 * (t32 * (d_v3 * (t32 * (t95 - t97) - t99) - t100) - t104);
+        const lanes t106 = t101 * (1.0 + t67 * (t64 - 1.0));
+        const lanes t107 = 0.16666666666666666 + d_v3 * (t80 + t103);
+        const lanes t108 = t66 * lanes_select(t33, 0.5 + d_v3 * (t81 + t107), t106) + t105;
+        const lanes t109 = (t67 * (2.0 - t64) + (-2.0 - t64)) * (t65 * t101);
+        const lanes t110 = t50 * lanes_select(t33, t107, t109) + t32 * (t82 + d_v3 * t100);
+        const lanes t111 = t86 * t110;
+        const lanes t112 = d_v0 * t111 - d_v1 * t108;
+        const lanes t113 = d_v0 * t108 + d_v1 * t111;
+        out_D_d[0] = t85;
+        out_D_d[1] = t87;
+        out_D_d[2] = t112;
+        out_D_d[3] = t113;
+        out_D_d[4] = -t87;
+        out_D_d[5] = t85;
+        out_D_d[6] = t113;
+        out_D_d[7] = -t112;
+        out_D_d[8] = lanes_of(0.0);
+        out_D_d[9] = lanes_of(0.0);
+        out_D_d[10] = lanes_of(1.0);
+        out_D_d[11] = lanes_of(0.0);
+        out_D_d[12] = lanes_of(0.0);
+        out_D_d[13] = lanes_of(0.0);
+        out_D_d[14] = lanes_of(0.0);
+        out_D_d[15] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -267,7 +273,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 16, n, k);
 }
 
-int liegen_groups_sim2_retract_batch(
+LANES_WHOLE int liegen_groups_sim2_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in d,
@@ -276,7 +282,9 @@ int liegen_groups_sim2_retract_batch(
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_d.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 37 : 5);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -299,17 +307,16 @@ int liegen_groups_sim2_retract_batch(
             liegen_groups_load(x, 5, k, count, x_lanes);
             liegen_groups_load(d, 4, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes);
+                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes, want_out_D_x,
+                    want_out_D_d);
             }
             if (!jacobians) {
                 block_value(x_lanes, d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 5, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_d, 16, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 16, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_d) liegen_groups_store(out_D_d, 16, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

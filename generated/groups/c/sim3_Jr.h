@@ -42,7 +42,7 @@ int liegen_groups_sim3_Jr(
     const double *d,
     double *out);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_sim3_Jr_batch(
     ptrdiff_t n,
     liegen_groups_in d,

@@ -63,7 +63,7 @@ static void block_value(
     const lanes_mask t40 = t39 <= 20.0;
     const lanes t41 = 1.0 / lanes_select(t40, lanes_of(4.47213595499958), d_v6);
     const lanes t42 = t41 * t41;
-    const lanes t43 = t42 * (1.0 + (-0.5 * (t37 + t38)));
+    const lanes t43 = t42 * (1.0 + (t37 + t38) * (-0.5));
     const lanes t44 = t42 * (1.0 + (t38 - t37) * (0.5 * t41));
     const lanes t45 = t42 * (-0.5 - t43);
     const lanes t46 = t39 * (3.4565955041241694e-26 + t39 * 3.6326829868633628e-28);
@@ -102,43 +102,43 @@ static void block_value(
     const lanes t79 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
     const lanes t80 = d_v0 * d_v4 - d_v1 * d_v3;
     const lanes t81 = 1.0 / (-2.0 * (t66 * t61) + t14 * t65);
-    const lanes t82 = t81 * (t77 + (t26 * 4.0 - t34) * (0.5 * t65));
+    const lanes t82 = (t77 + (t26 * 4.0 - t34) * (0.5 * t65)) * t81;
     const lanes t83 = t73 + t1 * t78;
     const lanes t84 = t1 * t82;
     const lanes t85 = t83 + (-2.0 * t84);
-    const lanes t86 = 0.5 + d_v6 * t85;
+    const lanes t86 = t81 * (t36 * t65 - t66 * t52);
     const lanes t87 = d_v6 * t79;
     const lanes t88 = t87 * (t78 + (-2.0 * t82));
-    const lanes t89 = t81 * (t36 * t65 - t66 * t52);
-    const lanes t90 = t89 - t85;
+    const lanes t89 = t86 - t85;
+    const lanes t90 = 0.5 + d_v6 * t85;
     const lanes t91 = d_v2 * d_v3 - d_v0 * d_v5;
     const lanes t92 = t83 * (2.0 * t81);
     const lanes t93 = t15 * t92;
-    const lanes t94 = 0.5 + d_v6 * t89;
+    const lanes t94 = 0.5 + d_v6 * t86;
     const lanes t95 = d_v1 * t93;
     const lanes t96 = d_v0 * t94;
     const lanes t97 = d_v2 * t93;
     const lanes t98 = d_v1 * d_v5 - d_v2 * d_v4;
-    const lanes t99 = 0.5 * t89 + t84;
+    const lanes t99 = t82 * t79;
     const lanes t100 = d_v6 * t82;
     const lanes t101 = t87 * (t82 + t70 * t92);
-    const lanes t102 = 0.5 + d_v6 * (t83 - t84);
-    const lanes t103 = t99 - t83;
-    const lanes t104 = t82 * t79;
-    const lanes t105 = t99 * d_v4 + t100 * t91 - d_v1 * t104;
-    const lanes t106 = t99 * d_v5 + t100 * t80 - d_v2 * t104;
-    const lanes t107 = d_v0 * t101 + (t98 * t103 + d_v3 * t102);
+    const lanes t102 = 0.5 * t86 + t84;
+    const lanes t103 = 0.5 + d_v6 * (t83 - t84);
+    const lanes t104 = t102 - t83;
+    const lanes t105 = d_v4 * t102 + (t100 * t91 - d_v1 * t99);
+    const lanes t106 = d_v5 * t102 + (t100 * t80 - d_v2 * t99);
+    const lanes t107 = d_v0 * t101 + (t98 * t104 + d_v3 * t103);
     const lanes t108 = d_v1 * t106 + d_v2 * t105;
     const lanes t109 = d_v0 * t93;
     const lanes t110 = d_v1 * t94;
     const lanes t111 = d_v2 * t94;
-    const lanes t112 = d_v6 * (-0.5) + (t1 * t93 - 1.0 - t39 * t73);
-    const lanes t113 = d_v3 * t99 + t100 * t98 - d_v0 * t104;
-    const lanes t114 = d_v1 * t101 + (t91 * t103 + d_v4 * t102);
+    const lanes t112 = d_v6 * (-0.5) + (t1 * t93 - 1.0) - t39 * t73;
+    const lanes t113 = d_v3 * t102 + (t100 * t98 - d_v0 * t99);
+    const lanes t114 = d_v1 * t101 + (t91 * t104 + d_v4 * t103);
     const lanes t115 = d_v0 * t106 + d_v2 * t113;
-    const lanes t116 = d_v2 * t101 + (t103 * t80 + d_v5 * t102);
+    const lanes t116 = d_v2 * t101 + (t104 * t80 + d_v5 * t103);
     const lanes t117 = d_v0 * t105 + d_v1 * t113;
-    const lanes t118 = t89 * t79;
+    const lanes t118 = t79 * t86;
     const lanes t119 = d_v1 * t75;
     const lanes t120 = d_v0 * 0.5;
     const lanes t121 = d_v2 * t119;
@@ -175,21 +175,21 @@ static void block_value(
     out[24] = d_v0 * t109 - t112;
     out[25] = d_v0 * t95 - t111;
     out[26] = t110 + d_v0 * t97;
-    out[27] = d_v0 * t88 - d_v3 * t86 - t98 * t90;
+    out[27] = d_v0 * t88 - t98 * t89 - d_v3 * t90;
     out[28] = t117 + t116;
     out[29] = t105 * (d_v1 * 2.0) - t118;
     out[30] = t108 - t107;
     out[31] = t111 + d_v1 * t109;
     out[32] = d_v1 * t95 - t112;
     out[33] = d_v1 * t97 - t96;
-    out[34] = d_v1 * t88 - d_v4 * t86 - t91 * t90;
+    out[34] = d_v1 * t88 - t91 * t89 - d_v4 * t90;
     out[35] = t115 - t114;
     out[36] = t108 + t107;
     out[37] = t106 * (d_v2 * 2.0) - t118;
     out[38] = d_v2 * t109 - t110;
     out[39] = t96 + d_v2 * t95;
     out[40] = d_v2 * t97 - t112;
-    out[41] = d_v2 * t88 - d_v5 * t86 - t80 * t90;
+    out[41] = d_v2 * t88 - t80 * t89 - d_v5 * t90;
     out[42] = lanes_of(0.0);
     out[43] = lanes_of(0.0);
     out[44] = lanes_of(0.0);
@@ -210,7 +210,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 49, n, k);
 }
 
-int liegen_groups_sim3_Jr_inv_batch(
+LANES_WHOLE int liegen_groups_sim3_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

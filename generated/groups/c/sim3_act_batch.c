@@ -26,23 +26,23 @@ static void block_value(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t0 * x_qx;
-    const lanes t5 = t2 * x_qw;
-    const lanes t6 = t2 * x_qx;
-    const lanes t7 = t0 * x_qw;
-    const lanes t8 = p_z * (t6 + t7) + (p_x * (t1 - t3) + p_y * (t4 - t5));
-    const lanes t9 = 2.0 * x_qx;
-    const lanes t10 = x_qx * t9;
-    const lanes t11 = p_x * (t4 + t5) + p_y * (1.0 - t3 - t10);
-    const lanes t12 = x_qy * t2;
-    const lanes t13 = x_qw * t9;
-    const lanes t14 = p_z * (t1 - t10) + (p_x * (t6 - t7) + p_y * (t12 + t13));
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = t0 * x_qx;
+    const lanes t2 = 2.0 * x_qy;
+    const lanes t3 = t2 * x_qw;
+    const lanes t4 = x_qx * t2;
+    const lanes t5 = t0 * x_qw;
+    const lanes t6 = 1.0 - x_qy * t2;
+    const lanes t7 = x_qz * t0;
+    const lanes t8 = p_x * (t6 - t7) + (p_z * (t1 + t3) + p_y * (t4 - t5));
+    const lanes t9 = t0 * x_qy;
+    const lanes t10 = 2.0 * x_qx;
+    const lanes t11 = x_qw * t10;
+    const lanes t12 = x_qx * t10;
+    const lanes t13 = p_z * (t9 - t11) + p_x * (t4 + t5);
+    const lanes t14 = p_z * (t6 - t12) + (p_x * (t1 - t3) + p_y * (t9 + t11));
     out[0] = x_x + x_scale * t8;
-    out[1] = x_y + x_scale * (p_z * (t12 - t13) + t11);
+    out[1] = x_y + x_scale * (p_y * (1.0 - t12 - t7) + t13);
     out[2] = x_z + x_scale * t14;
 }
 
@@ -52,7 +52,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -65,69 +67,73 @@ static void block_jacobians(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t1 - t3;
-    const lanes t5 = t0 * x_qx;
-    const lanes t6 = t2 * x_qw;
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = t0 * x_qx;
+    const lanes t2 = 2.0 * x_qy;
+    const lanes t3 = t2 * x_qw;
+    const lanes t4 = t1 + t3;
+    const lanes t5 = x_qx * t2;
+    const lanes t6 = t0 * x_qw;
     const lanes t7 = t5 - t6;
-    const lanes t8 = t2 * x_qx;
-    const lanes t9 = t0 * x_qw;
-    const lanes t10 = t8 + t9;
-    const lanes t11 = t5 + t6;
+    const lanes t8 = 1.0 - x_qy * t2;
+    const lanes t9 = x_qz * t0;
+    const lanes t10 = t8 - t9;
+    const lanes t11 = t0 * x_qy;
     const lanes t12 = 2.0 * x_qx;
-    const lanes t13 = x_qx * t12;
-    const lanes t14 = 1.0 - t3 - t13;
-    const lanes t15 = x_qy * t2;
-    const lanes t16 = x_qw * t12;
-    const lanes t17 = t15 - t16;
-    const lanes t18 = t8 - t9;
-    const lanes t19 = t15 + t16;
-    const lanes t20 = t1 - t13;
-    const lanes t21 = x_scale * t10;
+    const lanes t13 = x_qw * t12;
+    const lanes t14 = t11 - t13;
+    const lanes t15 = t5 + t6;
+    const lanes t16 = x_qx * t12;
+    const lanes t17 = 1.0 - t16 - t9;
+    const lanes t18 = t1 - t3;
+    const lanes t19 = t11 + t13;
+    const lanes t20 = t8 - t16;
+    const lanes t21 = x_scale * t4;
     const lanes t22 = x_scale * t7;
-    const lanes t23 = x_scale * t4;
-    const lanes t24 = x_scale * t17;
-    const lanes t25 = x_scale * t14;
-    const lanes t26 = x_scale * t11;
+    const lanes t23 = x_scale * t10;
+    const lanes t24 = x_scale * t14;
+    const lanes t25 = x_scale * t17;
+    const lanes t26 = x_scale * t15;
     const lanes t27 = x_scale * t20;
     const lanes t28 = x_scale * t19;
     const lanes t29 = x_scale * t18;
-    out[0] = x_x + x_scale * (p_z * t10 + (p_x * t4 + p_y * t7));
-    out[1] = x_y + x_scale * (p_z * t17 + (p_x * t11 + p_y * t14));
+    out[0] = x_x + x_scale * (p_x * t10 + (p_z * t4 + p_y * t7));
+    out[1] = x_y + x_scale * (p_y * t17 + (p_z * t14 + p_x * t15));
     out[2] = x_z + x_scale * (p_z * t20 + (p_x * t18 + p_y * t19));
-    out_D_x[0] = p_y * t21 - p_z * t22;
-    out_D_x[1] = p_z * t23 - p_x * t21;
-    out_D_x[2] = p_x * t22 - p_y * t23;
-    out_D_x[3] = t23;
-    out_D_x[4] = t22;
-    out_D_x[5] = t21;
-    out_D_x[6] = p_z * t21 + (p_x * t23 + p_y * t22);
-    out_D_x[7] = p_y * t24 - p_z * t25;
-    out_D_x[8] = p_z * t26 - p_x * t24;
-    out_D_x[9] = p_x * t25 - p_y * t26;
-    out_D_x[10] = t26;
-    out_D_x[11] = t25;
-    out_D_x[12] = t24;
-    out_D_x[13] = p_z * t24 + (p_x * t26 + p_y * t25);
-    out_D_x[14] = p_y * t27 - p_z * t28;
-    out_D_x[15] = p_z * t29 - p_x * t27;
-    out_D_x[16] = p_x * t28 - p_y * t29;
-    out_D_x[17] = t29;
-    out_D_x[18] = t28;
-    out_D_x[19] = t27;
-    out_D_x[20] = p_z * t27 + (p_x * t29 + p_y * t28);
-    out_D_p[0] = t23;
-    out_D_p[1] = t22;
-    out_D_p[2] = t21;
-    out_D_p[3] = t26;
-    out_D_p[4] = t25;
-    out_D_p[5] = t24;
-    out_D_p[6] = t29;
-    out_D_p[7] = t28;
-    out_D_p[8] = t27;
+    if (want_out_D_x) {
+        out_D_x[0] = p_y * t21 - p_z * t22;
+        out_D_x[1] = p_z * t23 - p_x * t21;
+        out_D_x[2] = p_x * t22 - p_y * t23;
+        out_D_x[3] = t23;
+        out_D_x[4] = t22;
+        out_D_x[5] = t21;
+        out_D_x[6] = p_x * t23 + (p_z * t21 + p_y * t22);
+        out_D_x[7] = p_y * t24 - p_z * t25;
+        out_D_x[8] = p_z * t26 - p_x * t24;
+        out_D_x[9] = p_x * t25 - p_y * t26;
+        out_D_x[10] = t26;
+        out_D_x[11] = t25;
+        out_D_x[12] = t24;
+        out_D_x[13] = p_y * t25 + (p_z * t24 + p_x * t26);
+        out_D_x[14] = p_y * t27 - p_z * t28;
+        out_D_x[15] = p_z * t29 - p_x * t27;
+        out_D_x[16] = p_x * t28 - p_y * t29;
+        out_D_x[17] = t29;
+        out_D_x[18] = t28;
+        out_D_x[19] = t27;
+        out_D_x[20] = p_z * t27 + (p_x * t29 + p_y * t28);
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = t23;
+        out_D_p[1] = t22;
+        out_D_p[2] = t21;
+        out_D_p[3] = t26;
+        out_D_p[4] = t25;
+        out_D_p[5] = t24;
+        out_D_p[6] = t29;
+        out_D_p[7] = t28;
+        out_D_p[8] = t27;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -147,7 +153,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 9, n, k);
 }
 
-int liegen_groups_sim3_act_batch(
+LANES_WHOLE int liegen_groups_sim3_act_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -156,7 +162,9 @@ int liegen_groups_sim3_act_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 33 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -179,17 +187,16 @@ int liegen_groups_sim3_act_batch(
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 21, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 21, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -89,7 +89,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 49, n, k);
 }
 
-int liegen_groups_sim3_ad_batch(
+LANES_WHOLE int liegen_groups_sim3_ad_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

@@ -41,7 +41,7 @@ int liegen_groups_sim3_adjoint(
     const double *x,
     double *out);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_sim3_adjoint_batch(
     ptrdiff_t n,
     liegen_groups_in x,

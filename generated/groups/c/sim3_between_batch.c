@@ -32,32 +32,32 @@ static void block_value(
     const lanes y_z = y[6];
     const lanes y_scale = y[7];
     const lanes t0 = x_qz * 2.0;
-    const lanes t1 = x_qz * t0;
-    const lanes t2 = x_qy * 2.0;
-    const lanes t3 = 1.0 - x_qy * t2;
-    const lanes t4 = x_x - y_x;
-    const lanes t5 = x_qx * t2;
-    const lanes t6 = x_qw * t0;
-    const lanes t7 = x_y - y_y;
-    const lanes t8 = x_qw * t2;
-    const lanes t9 = x_qx * t0;
-    const lanes t10 = x_z - y_z;
-    const lanes t11 = (t8 - t9) * t10 + ((t1 - t3) * t4 - (t5 + t6) * t7);
-    const lanes t12 = 1.0 / x_scale;
-    const lanes t13 = x_qx * 2.0;
-    const lanes t14 = x_qx * t13;
-    const lanes t15 = t4 * (t6 - t5) + t7 * (t14 + (t1 - 1.0));
-    const lanes t16 = x_qy * t0;
-    const lanes t17 = x_qw * t13;
-    const lanes t18 = t10 * (t14 - t3) + (t7 * (t17 - t16) - t4 * (t8 + t9));
-    out[0] = x_qz * y_qy + (x_qw * y_qx - x_qx * y_qw - x_qy * y_qz);
-    out[1] = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
-    out[2] = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
-    out[3] = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx));
-    out[4] = t11 * t12;
-    out[5] = t12 * (t15 - t10 * (t16 + t17));
-    out[6] = t12 * t18;
-    out[7] = t12 * y_scale;
+    const lanes t1 = x_qx * 2.0;
+    const lanes t2 = x_qy * t0;
+    const lanes t3 = x_qw * t1;
+    const lanes t4 = x_qy * 2.0;
+    const lanes t5 = x_qx * t0;
+    const lanes t6 = x_qw * t4;
+    const lanes t7 = x_qx * t4;
+    const lanes t8 = x_qw * t0;
+    const lanes t9 = x_qx * t1;
+    const lanes t10 = 1.0 - x_qy * t4;
+    const lanes t11 = x_qz * t0;
+    const lanes t12 = x_x - y_x;
+    const lanes t13 = x_y - y_y;
+    const lanes t14 = x_z - y_z;
+    const lanes t15 = t12 * (t8 - t7) - t14 * (t2 + t3);
+    const lanes t16 = t14 * (t9 - t10) + (t13 * (t3 - t2) - t12 * (t6 + t5));
+    const lanes t17 = (t11 - t10) * t12 + ((t6 - t5) * t14 - (t7 + t8) * t13);
+    const lanes t18 = 1.0 / x_scale;
+    out[0] = x_qw * y_qx + (x_qz * y_qy - x_qy * y_qz) - x_qx * y_qw;
+    out[1] = y_qz * x_qx + (y_qy * x_qw - (x_qz * y_qx + x_qy * y_qw));
+    out[2] = y_qz * x_qw + (x_qy * y_qx - x_qz * y_qw) - y_qy * x_qx;
+    out[3] = y_qx * x_qx + (x_qw * y_qw + (x_qz * y_qz + y_qy * x_qy));
+    out[4] = t17 * t18;
+    out[5] = t18 * (t13 * (t11 + (t9 - 1.0)) + t15);
+    out[6] = t18 * t16;
+    out[7] = t18 * y_scale;
 }
 
 /* Value and Jacobians of a block. */
@@ -66,7 +66,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -111,37 +113,6 @@ static void block_jacobians(
     const lanes t24 = t14 * (t19 - t7) + (t11 * (t22 - t21) - t8 * (t12 + t13));
     const lanes t25 = t16 * t24;
     const lanes t26 = t16 * y_scale;
-    const lanes t27 = t1 * (-2.0);
-    const lanes t28 = -1.0 - t1 * t27;
-    const lanes t29 = t2 * (-2.0);
-    const lanes t30 = t2 * t29;
-    const lanes t31 = t28 - t30;
-    const lanes t32 = t0 * t27;
-    const lanes t33 = t3 * t29;
-    const lanes t34 = t32 + t33;
-    const lanes t35 = t0 * t29;
-    const lanes t36 = t3 * t27;
-    const lanes t37 = t35 - t36;
-    const lanes t38 = t32 - t33;
-    const lanes t39 = t0 * 2.0;
-    const lanes t40 = t0 * t39;
-    const lanes t41 = t40 + (-1.0 - t30);
-    const lanes t42 = t1 * t29;
-    const lanes t43 = t3 * t39;
-    const lanes t44 = t42 - t43;
-    const lanes t45 = t35 + t36;
-    const lanes t46 = t42 + t43;
-    const lanes t47 = t28 + t40;
-    const lanes t48 = 1.0 / t26;
-    const lanes t49 = t37 * t48;
-    const lanes t50 = t34 * t48;
-    const lanes t51 = t31 * t48;
-    const lanes t52 = t44 * t48;
-    const lanes t53 = t41 * t48;
-    const lanes t54 = t38 * t48;
-    const lanes t55 = t47 * t48;
-    const lanes t56 = t46 * t48;
-    const lanes t57 = t45 * t48;
     out[0] = t0;
     out[1] = t1;
     out[2] = t2;
@@ -150,104 +121,139 @@ static void block_jacobians(
     out[5] = t23;
     out[6] = t25;
     out[7] = t26;
-    out_D_x[0] = t31;
-    out_D_x[1] = t34;
-    out_D_x[2] = t37;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = t38;
-    out_D_x[8] = t41;
-    out_D_x[9] = t44;
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = t45;
-    out_D_x[15] = t46;
-    out_D_x[16] = t47;
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(0.0);
-    out_D_x[20] = lanes_of(0.0);
-    out_D_x[21] = t23 * t49 - t25 * t50;
-    out_D_x[22] = t25 * t51 - t17 * t49;
-    out_D_x[23] = t17 * t50 - t23 * t51;
-    out_D_x[24] = t51;
-    out_D_x[25] = t50;
-    out_D_x[26] = t49;
-    out_D_x[27] = t25 * t49 + (t17 * t51 + t23 * t50);
-    out_D_x[28] = t23 * t52 - t25 * t53;
-    out_D_x[29] = t25 * t54 - t17 * t52;
-    out_D_x[30] = t17 * t53 - t23 * t54;
-    out_D_x[31] = t54;
-    out_D_x[32] = t53;
-    out_D_x[33] = t52;
-    out_D_x[34] = t25 * t52 + (t17 * t54 + t23 * t53);
-    out_D_x[35] = t23 * t55 - t25 * t56;
-    out_D_x[36] = t25 * t57 - t17 * t55;
-    out_D_x[37] = t17 * t56 - t23 * t57;
-    out_D_x[38] = t57;
-    out_D_x[39] = t56;
-    out_D_x[40] = t55;
-    out_D_x[41] = t25 * t55 + (t17 * t57 + t23 * t56);
-    out_D_x[42] = lanes_of(0.0);
-    out_D_x[43] = lanes_of(0.0);
-    out_D_x[44] = lanes_of(0.0);
-    out_D_x[45] = lanes_of(0.0);
-    out_D_x[46] = lanes_of(0.0);
-    out_D_x[47] = lanes_of(0.0);
-    out_D_x[48] = lanes_of(-1.0);
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(0.0);
-    out_D_y[8] = lanes_of(1.0);
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(0.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = lanes_of(0.0);
-    out_D_y[15] = lanes_of(0.0);
-    out_D_y[16] = lanes_of(1.0);
-    out_D_y[17] = lanes_of(0.0);
-    out_D_y[18] = lanes_of(0.0);
-    out_D_y[19] = lanes_of(0.0);
-    out_D_y[20] = lanes_of(0.0);
-    out_D_y[21] = lanes_of(0.0);
-    out_D_y[22] = lanes_of(0.0);
-    out_D_y[23] = lanes_of(0.0);
-    out_D_y[24] = lanes_of(1.0);
-    out_D_y[25] = lanes_of(0.0);
-    out_D_y[26] = lanes_of(0.0);
-    out_D_y[27] = lanes_of(0.0);
-    out_D_y[28] = lanes_of(0.0);
-    out_D_y[29] = lanes_of(0.0);
-    out_D_y[30] = lanes_of(0.0);
-    out_D_y[31] = lanes_of(0.0);
-    out_D_y[32] = lanes_of(1.0);
-    out_D_y[33] = lanes_of(0.0);
-    out_D_y[34] = lanes_of(0.0);
-    out_D_y[35] = lanes_of(0.0);
-    out_D_y[36] = lanes_of(0.0);
-    out_D_y[37] = lanes_of(0.0);
-    out_D_y[38] = lanes_of(0.0);
-    out_D_y[39] = lanes_of(0.0);
-    out_D_y[40] = lanes_of(1.0);
-    out_D_y[41] = lanes_of(0.0);
-    out_D_y[42] = lanes_of(0.0);
-    out_D_y[43] = lanes_of(0.0);
-    out_D_y[44] = lanes_of(0.0);
-    out_D_y[45] = lanes_of(0.0);
-    out_D_y[46] = lanes_of(0.0);
-    out_D_y[47] = lanes_of(0.0);
-    out_D_y[48] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t27 = t1 * (-2.0);
+        const lanes t28 = -1.0 - t1 * t27;
+        const lanes t29 = t2 * (-2.0);
+        const lanes t30 = t2 * t29;
+        const lanes t31 = t28 - t30;
+        const lanes t32 = t0 * t27;
+        const lanes t33 = t3 * t29;
+        const lanes t34 = t32 + t33;
+        const lanes t35 = t0 * t29;
+        const lanes t36 = t3 * t27;
+        const lanes t37 = t35 - t36;
+        const lanes t38 = t32 - t33;
+        const lanes t39 = t0 * 2.0;
+        const lanes t40 = t0 * t39;
+        const lanes t41 = t40 + (-1.0 - t30);
+        const lanes t42 = t1 * t29;
+        const lanes t43 = t3 * t39;
+        const lanes t44 = t42 - t43;
+        const lanes t45 = t35 + t36;
+        const lanes t46 = t42 + t43;
+        const lanes t47 = t28 + t40;
+        const lanes t48 = 1.0 / t26;
+        const lanes t49 = t37 * t48;
+        const lanes t50 = t34 * t48;
+        const lanes t51 = t31 * t48;
+        const lanes t52 = t44 * t48;
+        const lanes t53 = t41 * t48;
+        const lanes t54 = t38 * t48;
+        const lanes t55 = t47 * t48;
+        const lanes t56 = t46 * t48;
+        const lanes t57 = t45 * t48;
+        out_D_x[0] = t31;
+        out_D_x[1] = t34;
+        out_D_x[2] = t37;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = t38;
+        out_D_x[8] = t41;
+        out_D_x[9] = t44;
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = t45;
+        out_D_x[15] = t46;
+        out_D_x[16] = t47;
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(0.0);
+        out_D_x[20] = lanes_of(0.0);
+        out_D_x[21] = t23 * t49 - t25 * t50;
+        out_D_x[22] = t25 * t51 - t17 * t49;
+        out_D_x[23] = t17 * t50 - t23 * t51;
+        out_D_x[24] = t51;
+        out_D_x[25] = t50;
+        out_D_x[26] = t49;
+        out_D_x[27] = t25 * t49 + (t17 * t51 + t23 * t50);
+        out_D_x[28] = t23 * t52 - t25 * t53;
+        out_D_x[29] = t25 * t54 - t17 * t52;
+        out_D_x[30] = t17 * t53 - t23 * t54;
+        out_D_x[31] = t54;
+        out_D_x[32] = t53;
+        out_D_x[33] = t52;
+        out_D_x[34] = t25 * t52 + (t17 * t54 + t23 * t53);
+        out_D_x[35] = t23 * t55 - t25 * t56;
+        out_D_x[36] = t25 * t57 - t17 * t55;
+        out_D_x[37] = t17 * t56 - t23 * t57;
+        out_D_x[38] = t57;
+        out_D_x[39] = t56;
+        out_D_x[40] = t55;
+        out_D_x[41] = t25 * t55 + (t17 * t57 + t23 * t56);
+        out_D_x[42] = lanes_of(0.0);
+        out_D_x[43] = lanes_of(0.0);
+        out_D_x[44] = lanes_of(0.0);
+        out_D_x[45] = lanes_of(0.0);
+        out_D_x[46] = lanes_of(0.0);
+        out_D_x[47] = lanes_of(0.0);
+        out_D_x[48] = lanes_of(-1.0);
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(0.0);
+        out_D_y[8] = lanes_of(1.0);
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(0.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = lanes_of(0.0);
+        out_D_y[15] = lanes_of(0.0);
+        out_D_y[16] = lanes_of(1.0);
+        out_D_y[17] = lanes_of(0.0);
+        out_D_y[18] = lanes_of(0.0);
+        out_D_y[19] = lanes_of(0.0);
+        out_D_y[20] = lanes_of(0.0);
+        out_D_y[21] = lanes_of(0.0);
+        out_D_y[22] = lanes_of(0.0);
+        out_D_y[23] = lanes_of(0.0);
+        out_D_y[24] = lanes_of(1.0);
+        out_D_y[25] = lanes_of(0.0);
+        out_D_y[26] = lanes_of(0.0);
+        out_D_y[27] = lanes_of(0.0);
+        out_D_y[28] = lanes_of(0.0);
+        out_D_y[29] = lanes_of(0.0);
+        out_D_y[30] = lanes_of(0.0);
+        out_D_y[31] = lanes_of(0.0);
+        out_D_y[32] = lanes_of(1.0);
+        out_D_y[33] = lanes_of(0.0);
+        out_D_y[34] = lanes_of(0.0);
+        out_D_y[35] = lanes_of(0.0);
+        out_D_y[36] = lanes_of(0.0);
+        out_D_y[37] = lanes_of(0.0);
+        out_D_y[38] = lanes_of(0.0);
+        out_D_y[39] = lanes_of(0.0);
+        out_D_y[40] = lanes_of(1.0);
+        out_D_y[41] = lanes_of(0.0);
+        out_D_y[42] = lanes_of(0.0);
+        out_D_y[43] = lanes_of(0.0);
+        out_D_y[44] = lanes_of(0.0);
+        out_D_y[45] = lanes_of(0.0);
+        out_D_y[46] = lanes_of(0.0);
+        out_D_y[47] = lanes_of(0.0);
+        out_D_y[48] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -267,7 +273,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 49, n, k);
 }
 
-int liegen_groups_sim3_between_batch(
+LANES_WHOLE int liegen_groups_sim3_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -276,7 +282,9 @@ int liegen_groups_sim3_between_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 106 : 8);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -299,17 +307,16 @@ int liegen_groups_sim3_between_batch(
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(y, 8, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 8, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 49, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 49, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -31,27 +31,27 @@ static void block_value(
     const lanes y_y = y[5];
     const lanes y_z = y[6];
     const lanes y_scale = y[7];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = x_qz * 2.0;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = x_qx * t0;
-    const lanes t5 = x_qw * t2;
-    const lanes t6 = x_qx * t2;
-    const lanes t7 = x_qw * t0;
-    const lanes t8 = y_z * (t6 + t7) + (y_x * (t1 - t3) + y_y * (t4 - t5));
-    const lanes t9 = x_qx * 2.0;
-    const lanes t10 = x_qx * t9;
-    const lanes t11 = y_x * (t4 + t5) + y_y * (1.0 - t3 - t10);
-    const lanes t12 = x_qy * t2;
-    const lanes t13 = x_qw * t9;
-    const lanes t14 = y_z * (t1 - t10) + (y_x * (t6 - t7) + y_y * (t12 + t13));
-    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
-    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
-    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
-    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    const lanes t0 = x_qz * 2.0;
+    const lanes t1 = x_qx * t0;
+    const lanes t2 = x_qy * 2.0;
+    const lanes t3 = x_qw * t2;
+    const lanes t4 = x_qx * t2;
+    const lanes t5 = x_qw * t0;
+    const lanes t6 = 1.0 - x_qy * t2;
+    const lanes t7 = x_qz * t0;
+    const lanes t8 = y_x * (t6 - t7) + (y_z * (t1 + t3) + y_y * (t4 - t5));
+    const lanes t9 = x_qy * t0;
+    const lanes t10 = x_qx * 2.0;
+    const lanes t11 = x_qw * t10;
+    const lanes t12 = x_qx * t10;
+    const lanes t13 = y_z * (t9 - t11) + y_x * (t4 + t5);
+    const lanes t14 = y_z * (t6 - t12) + (y_x * (t1 - t3) + y_y * (t9 + t11));
+    out[0] = x_qx * y_qw + (x_qw * y_qx + (x_qy * y_qz - x_qz * y_qy));
+    out[1] = y_qy * x_qw + (x_qz * y_qx + x_qy * y_qw) - y_qz * x_qx;
+    out[2] = y_qy * x_qx + (y_qz * x_qw + (x_qz * y_qw - x_qy * y_qx));
+    out[3] = x_qw * y_qw - (x_qz * y_qz + y_qy * x_qy) - y_qx * x_qx;
     out[4] = x_x + x_scale * t8;
-    out[5] = x_y + x_scale * (y_z * (t12 - t13) + t11);
+    out[5] = x_y + x_scale * (y_y * (1.0 - t12 - t7) + t13);
     out[6] = x_z + x_scale * t14;
     out[7] = x_scale * y_scale;
 }
@@ -62,7 +62,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -80,158 +82,162 @@ static void block_jacobians(
     const lanes y_y = y[5];
     const lanes y_z = y[6];
     const lanes y_scale = y[7];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = x_qz * 2.0;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = x_qx * t0;
-    const lanes t5 = x_qw * t2;
-    const lanes t6 = x_qx * t2;
-    const lanes t7 = x_qw * t0;
-    const lanes t8 = y_z * (t6 + t7) + (y_x * (t1 - t3) + y_y * (t4 - t5));
-    const lanes t9 = x_qx * 2.0;
-    const lanes t10 = x_qx * t9;
-    const lanes t11 = x_qy * t2;
-    const lanes t12 = x_qw * t9;
-    const lanes t13 = y_x * (t4 + t5) + y_y * (1.0 - t3 - t10);
-    const lanes t14 = y_z * (t1 - t10) + (y_x * (t6 - t7) + y_y * (t11 + t12));
-    const lanes t15 = y_qy * 2.0;
-    const lanes t16 = 1.0 - y_qy * t15;
-    const lanes t17 = y_qz * 2.0;
-    const lanes t18 = y_qz * t17;
-    const lanes t19 = t16 - t18;
-    const lanes t20 = y_qx * t15;
-    const lanes t21 = y_qw * t17;
-    const lanes t22 = t20 + t21;
-    const lanes t23 = y_qx * t17;
-    const lanes t24 = y_qw * t15;
-    const lanes t25 = t23 - t24;
-    const lanes t26 = t20 - t21;
-    const lanes t27 = y_qx * 2.0;
-    const lanes t28 = y_qx * t27;
-    const lanes t29 = 1.0 - t18 - t28;
-    const lanes t30 = y_qy * t17;
-    const lanes t31 = y_qw * t27;
-    const lanes t32 = t30 + t31;
-    const lanes t33 = t23 + t24;
-    const lanes t34 = t30 - t31;
-    const lanes t35 = t16 - t28;
-    const lanes t36 = 1.0 / y_scale;
-    const lanes t37 = t25 * t36;
-    const lanes t38 = t22 * t36;
-    const lanes t39 = t19 * t36;
-    const lanes t40 = t32 * t36;
-    const lanes t41 = t29 * t36;
-    const lanes t42 = t26 * t36;
-    const lanes t43 = t35 * t36;
-    const lanes t44 = t34 * t36;
-    const lanes t45 = t33 * t36;
-    out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
-    out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
-    out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
-    out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
+    const lanes t0 = x_qz * 2.0;
+    const lanes t1 = x_qx * t0;
+    const lanes t2 = x_qy * 2.0;
+    const lanes t3 = x_qw * t2;
+    const lanes t4 = x_qx * t2;
+    const lanes t5 = x_qw * t0;
+    const lanes t6 = 1.0 - x_qy * t2;
+    const lanes t7 = x_qz * t0;
+    const lanes t8 = y_x * (t6 - t7) + (y_z * (t1 + t3) + y_y * (t4 - t5));
+    const lanes t9 = x_qy * t0;
+    const lanes t10 = x_qx * 2.0;
+    const lanes t11 = x_qw * t10;
+    const lanes t12 = x_qx * t10;
+    const lanes t13 = y_z * (t9 - t11) + y_x * (t4 + t5);
+    const lanes t14 = y_z * (t6 - t12) + (y_x * (t1 - t3) + y_y * (t9 + t11));
+    out[0] = x_qx * y_qw + (x_qw * y_qx + (x_qy * y_qz - x_qz * y_qy));
+    out[1] = y_qy * x_qw + (x_qz * y_qx + x_qy * y_qw) - y_qz * x_qx;
+    out[2] = y_qy * x_qx + (y_qz * x_qw + (x_qz * y_qw - x_qy * y_qx));
+    out[3] = x_qw * y_qw - (x_qz * y_qz + y_qy * x_qy) - y_qx * x_qx;
     out[4] = x_x + x_scale * t8;
-    out[5] = x_y + x_scale * (y_z * (t11 - t12) + t13);
+    out[5] = x_y + x_scale * (y_y * (1.0 - t12 - t7) + t13);
     out[6] = x_z + x_scale * t14;
     out[7] = x_scale * y_scale;
-    out_D_x[0] = t19;
-    out_D_x[1] = t22;
-    out_D_x[2] = t25;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = t26;
-    out_D_x[8] = t29;
-    out_D_x[9] = t32;
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = t33;
-    out_D_x[15] = t34;
-    out_D_x[16] = t35;
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(0.0);
-    out_D_x[20] = lanes_of(0.0);
-    out_D_x[21] = y_y * t37 - y_z * t38;
-    out_D_x[22] = y_z * t39 - y_x * t37;
-    out_D_x[23] = y_x * t38 - y_y * t39;
-    out_D_x[24] = t39;
-    out_D_x[25] = t38;
-    out_D_x[26] = t37;
-    out_D_x[27] = y_z * t37 + (y_x * t39 + y_y * t38);
-    out_D_x[28] = y_y * t40 - y_z * t41;
-    out_D_x[29] = y_z * t42 - y_x * t40;
-    out_D_x[30] = y_x * t41 - y_y * t42;
-    out_D_x[31] = t42;
-    out_D_x[32] = t41;
-    out_D_x[33] = t40;
-    out_D_x[34] = y_z * t40 + (y_x * t42 + y_y * t41);
-    out_D_x[35] = y_y * t43 - y_z * t44;
-    out_D_x[36] = y_z * t45 - y_x * t43;
-    out_D_x[37] = y_x * t44 - y_y * t45;
-    out_D_x[38] = t45;
-    out_D_x[39] = t44;
-    out_D_x[40] = t43;
-    out_D_x[41] = y_z * t43 + (y_x * t45 + y_y * t44);
-    out_D_x[42] = lanes_of(0.0);
-    out_D_x[43] = lanes_of(0.0);
-    out_D_x[44] = lanes_of(0.0);
-    out_D_x[45] = lanes_of(0.0);
-    out_D_x[46] = lanes_of(0.0);
-    out_D_x[47] = lanes_of(0.0);
-    out_D_x[48] = lanes_of(1.0);
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(0.0);
-    out_D_y[8] = lanes_of(1.0);
-    out_D_y[9] = lanes_of(0.0);
-    out_D_y[10] = lanes_of(0.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = lanes_of(0.0);
-    out_D_y[15] = lanes_of(0.0);
-    out_D_y[16] = lanes_of(1.0);
-    out_D_y[17] = lanes_of(0.0);
-    out_D_y[18] = lanes_of(0.0);
-    out_D_y[19] = lanes_of(0.0);
-    out_D_y[20] = lanes_of(0.0);
-    out_D_y[21] = lanes_of(0.0);
-    out_D_y[22] = lanes_of(0.0);
-    out_D_y[23] = lanes_of(0.0);
-    out_D_y[24] = lanes_of(1.0);
-    out_D_y[25] = lanes_of(0.0);
-    out_D_y[26] = lanes_of(0.0);
-    out_D_y[27] = lanes_of(0.0);
-    out_D_y[28] = lanes_of(0.0);
-    out_D_y[29] = lanes_of(0.0);
-    out_D_y[30] = lanes_of(0.0);
-    out_D_y[31] = lanes_of(0.0);
-    out_D_y[32] = lanes_of(1.0);
-    out_D_y[33] = lanes_of(0.0);
-    out_D_y[34] = lanes_of(0.0);
-    out_D_y[35] = lanes_of(0.0);
-    out_D_y[36] = lanes_of(0.0);
-    out_D_y[37] = lanes_of(0.0);
-    out_D_y[38] = lanes_of(0.0);
-    out_D_y[39] = lanes_of(0.0);
-    out_D_y[40] = lanes_of(1.0);
-    out_D_y[41] = lanes_of(0.0);
-    out_D_y[42] = lanes_of(0.0);
-    out_D_y[43] = lanes_of(0.0);
-    out_D_y[44] = lanes_of(0.0);
-    out_D_y[45] = lanes_of(0.0);
-    out_D_y[46] = lanes_of(0.0);
-    out_D_y[47] = lanes_of(0.0);
-    out_D_y[48] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t15 = y_qy * 2.0;
+        const lanes t16 = 1.0 - y_qy * t15;
+        const lanes t17 = y_qz * 2.0;
+        const lanes t18 = y_qz * t17;
+        const lanes t19 = t16 - t18;
+        const lanes t20 = y_qx * t15;
+        const lanes t21 = y_qw * t17;
+        const lanes t22 = t20 + t21;
+        const lanes t23 = y_qx * t17;
+        const lanes t24 = y_qw * t15;
+        const lanes t25 = t23 - t24;
+        const lanes t26 = t20 - t21;
+        const lanes t27 = y_qx * 2.0;
+        const lanes t28 = y_qx * t27;
+        const lanes t29 = 1.0 - t28 - t18;
+        const lanes t30 = y_qy * t17;
+        const lanes t31 = y_qw * t27;
+        const lanes t32 = t30 + t31;
+        const lanes t33 = t23 + t24;
+        const lanes t34 = t30 - t31;
+        const lanes t35 = t16 - t28;
+        const lanes t36 = 1.0 / y_scale;
+        const lanes t37 = t25 * t36;
+        const lanes t38 = t22 * t36;
+        const lanes t39 = t19 * t36;
+        const lanes t40 = t32 * t36;
+        const lanes t41 = t29 * t36;
+        const lanes t42 = t26 * t36;
+        const lanes t43 = t35 * t36;
+        const lanes t44 = t34 * t36;
+        const lanes t45 = t33 * t36;
+        out_D_x[0] = t19;
+        out_D_x[1] = t22;
+        out_D_x[2] = t25;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = t26;
+        out_D_x[8] = t29;
+        out_D_x[9] = t32;
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = t33;
+        out_D_x[15] = t34;
+        out_D_x[16] = t35;
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(0.0);
+        out_D_x[20] = lanes_of(0.0);
+        out_D_x[21] = y_y * t37 - y_z * t38;
+        out_D_x[22] = y_z * t39 - y_x * t37;
+        out_D_x[23] = y_x * t38 - y_y * t39;
+        out_D_x[24] = t39;
+        out_D_x[25] = t38;
+        out_D_x[26] = t37;
+        out_D_x[27] = y_y * t38 + (y_z * t37 + y_x * t39);
+        out_D_x[28] = y_y * t40 - y_z * t41;
+        out_D_x[29] = y_z * t42 - y_x * t40;
+        out_D_x[30] = y_x * t41 - y_y * t42;
+        out_D_x[31] = t42;
+        out_D_x[32] = t41;
+        out_D_x[33] = t40;
+        out_D_x[34] = y_y * t41 + (y_z * t40 + y_x * t42);
+        out_D_x[35] = y_y * t43 - y_z * t44;
+        out_D_x[36] = y_z * t45 - y_x * t43;
+        out_D_x[37] = y_x * t44 - y_y * t45;
+        out_D_x[38] = t45;
+        out_D_x[39] = t44;
+        out_D_x[40] = t43;
+        out_D_x[41] = y_y * t44 + (y_z * t43 + y_x * t45);
+        out_D_x[42] = lanes_of(0.0);
+        out_D_x[43] = lanes_of(0.0);
+        out_D_x[44] = lanes_of(0.0);
+        out_D_x[45] = lanes_of(0.0);
+        out_D_x[46] = lanes_of(0.0);
+        out_D_x[47] = lanes_of(0.0);
+        out_D_x[48] = lanes_of(1.0);
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(0.0);
+        out_D_y[8] = lanes_of(1.0);
+        out_D_y[9] = lanes_of(0.0);
+        out_D_y[10] = lanes_of(0.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = lanes_of(0.0);
+        out_D_y[15] = lanes_of(0.0);
+        out_D_y[16] = lanes_of(1.0);
+        out_D_y[17] = lanes_of(0.0);
+        out_D_y[18] = lanes_of(0.0);
+        out_D_y[19] = lanes_of(0.0);
+        out_D_y[20] = lanes_of(0.0);
+        out_D_y[21] = lanes_of(0.0);
+        out_D_y[22] = lanes_of(0.0);
+        out_D_y[23] = lanes_of(0.0);
+        out_D_y[24] = lanes_of(1.0);
+        out_D_y[25] = lanes_of(0.0);
+        out_D_y[26] = lanes_of(0.0);
+        out_D_y[27] = lanes_of(0.0);
+        out_D_y[28] = lanes_of(0.0);
+        out_D_y[29] = lanes_of(0.0);
+        out_D_y[30] = lanes_of(0.0);
+        out_D_y[31] = lanes_of(0.0);
+        out_D_y[32] = lanes_of(1.0);
+        out_D_y[33] = lanes_of(0.0);
+        out_D_y[34] = lanes_of(0.0);
+        out_D_y[35] = lanes_of(0.0);
+        out_D_y[36] = lanes_of(0.0);
+        out_D_y[37] = lanes_of(0.0);
+        out_D_y[38] = lanes_of(0.0);
+        out_D_y[39] = lanes_of(0.0);
+        out_D_y[40] = lanes_of(1.0);
+        out_D_y[41] = lanes_of(0.0);
+        out_D_y[42] = lanes_of(0.0);
+        out_D_y[43] = lanes_of(0.0);
+        out_D_y[44] = lanes_of(0.0);
+        out_D_y[45] = lanes_of(0.0);
+        out_D_y[46] = lanes_of(0.0);
+        out_D_y[47] = lanes_of(0.0);
+        out_D_y[48] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -251,7 +257,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 49, n, k);
 }
 
-int liegen_groups_sim3_compose_batch(
+LANES_WHOLE int liegen_groups_sim3_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -260,7 +266,9 @@ int liegen_groups_sim3_compose_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 106 : 8);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -283,17 +291,16 @@ int liegen_groups_sim3_compose_batch(
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(y, 8, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 8, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 49, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 49, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -87,7 +87,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *d,
     lanes *out,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_d)
 {
     const lanes d_v0 = d[0];
     const lanes d_v1 = d[1];
@@ -156,94 +157,6 @@ static void block_jacobians(
     const lanes t58 = d_v1 * d_v5 - d_v2 * d_v4;
     const lanes t59 = d_v2 * t58 - d_v0 * t51;
     const lanes t60 = d_v0 * t52 - d_v1 * t58;
-    const lanes t61 = 1.0 - t0 * t41;
-    const lanes t62 = d_v0 * t41;
-    const lanes t63 = d_v1 * t62;
-    const lanes t64 = d_v2 * t47;
-    const lanes t65 = d_v2 * t62;
-    const lanes t66 = d_v1 * t47;
-    const lanes t67 = d_v1 * t41;
-    const lanes t68 = d_v2 * t67;
-    const lanes t69 = d_v0 * t47;
-    const lanes t70 = lanes_exp(-d_v6);
-    const lanes t71 = 4.1178635428421474e-19 + d_v6 * (t16 + 2.0567783710503175e-20);
-    const lanes t72 = 1.561797933076898e-16 + d_v6 * (8.212278817078935e-18 + d_v6 * t71);
-    const lanes t73 = 4.779485737082404e-14 + d_v6 * (2.8114690303671545e-15 + d_v6 * t72);
-    const lanes t74 = 1.1470745308538233e-11 + d_v6 * (7.647165960397453e-13 + d_v6 * t73);
-    const lanes t75 = 2.0876756992690708e-09 + d_v6 * (1.6059043692023794e-10 + d_v6 * t74);
-    const lanes t76 = 2.755731922395698e-07 + d_v6 * (2.5052108389124404e-08 + d_v6 * t75);
-    const lanes t77 = 2.4801587301587247e-05 + d_v6 * (2.7557319223944413e-06 + d_v6 * t76);
-    const lanes t78 = 0.001388888888888889 + d_v6 * (0.00019841269841270012 + d_v6 * t77);
-    const lanes t79 = 0.008333333333333333 + d_v6 * t78;
-    const lanes t80 = 0.041666666666666664 + d_v6 * t79;
-    const lanes t81 = 0.16666666666666666 + d_v6 * t80;
-    const lanes t82 = lanes_select(t15, lanes_of(-2.75), d_v6);
-    const lanes t83 = -1.0 / t82;
-    const lanes t84 = 1.0 / t70;
-    const lanes t85 = t83 * (1.0 - t84);
-    const lanes t86 = t83 * (1.0 - t85);
-    const lanes t87 = t83 * (0.5 - t86);
-    const lanes t88 = t14 * lanes_select(t15, t81, t87) + t31 * (t41 + t49);
-    const lanes t89 = t70 * t88;
-    const lanes t90 = 0.5 + d_v6 * t81;
-    const lanes t91 = t70 * lanes_select(t15, 1.0 + d_v6 * t90, t85);
-    const lanes t92 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
-    const lanes t93 = (t89 - t47 * t91) * t92;
-    const lanes t94 = t14 * 2.0;
-    const lanes t95 = t83 * (0.16666666666666666 - t87);
-    const lanes t96 = t14 * lanes_select(t15, t79, t83 * (0.041666666666666664 - t95));
-    const lanes t97 = (t39 + 0.16666666666666666 * (t0 - 6.0)) * (t40 * t40);
-    const lanes t98 = lanes_select(t32, t37, t97);
-    const lanes_mask t99 = t0 <= 10.0;
-    const lanes t100 = t0 * (t0 * 8.238352127228608e-22 - 4.09903975815473e-19);
-    const lanes t101 = t0 * (t100 + 1.5618190715606994e-16) - 4.7794722734271995e-14;
-    const lanes t102 = t0 * (t0 * t101 + 1.1470745466476364e-11) - 2.0876756986572595e-09;
-    const lanes t103 = t0 * (t0 * t102 + 2.7557319223993533e-07) - 2.4801587301587488e-05;
-    const lanes t104 = lanes_select(t99, lanes_of(10.0), t0);
-    const lanes t105 = (0.041666666666666664 - t48) / t104;
-    const lanes t106 = lanes_select(t99, 0.001388888888888889 + t0 * t103, t105);
-    const lanes t107 = t96 + t31 * (t98 + d_v6 * t106);
-    const lanes t108 = t48 + t98 * (-3.0);
-    const lanes t109 = t70 * (t94 * t107 + t31 * (t108 + d_v6 * (t98 + t106 * (-4.0))));
-    const lanes t110 = t14 * lanes_select(t15, t80, t95) + t31 * (t48 + d_v6 * t98);
-    const lanes t111 = t70 * (t94 * t110 + t31 * (t48 * (-2.0) + (t41 + d_v6 * t108)));
-    const lanes t112 = t53 * t109 + d_v3 * t89 - t58 * t111;
-    const lanes t113 = t53 * t89;
-    const lanes t114 = t70 * (t14 * lanes_select(t15, t90, t86) + t31 * (t47 + t56));
-    const lanes t115 = t113 + d_v3 * t91 - t58 * t114;
-    const lanes t116 = t59 * t89;
-    const lanes t117 = t116 + d_v4 * t91 - t52 * t114;
-    const lanes t118 = t60 * t89;
-    const lanes t119 = t118 + d_v5 * t91 - t51 * t114;
-    const lanes t120 = t47 * t115 + t41 * (d_v1 * t119 - d_v2 * t117);
-    const lanes t121 = t89 - t114;
-    const lanes t122 = t92 * (t41 * t91);
-    const lanes t123 = t91 - t114;
-    const lanes t124 = d_v5 * t123 + (t118 + t51 * t121 - d_v2 * t122);
-    const lanes t125 = t47 * t117 + t41 * (d_v2 * t115 - d_v0 * t119);
-    const lanes t126 = d_v4 * t123 + (t116 + t52 * t121 - d_v1 * t122);
-    const lanes t127 = t47 * t119 + t41 * (d_v0 * t117 - d_v1 * t115);
-    const lanes t128 = t91 - t0 * t89;
-    const lanes t129 = d_v0 * t89;
-    const lanes t130 = d_v2 * t114;
-    const lanes t131 = d_v1 * t89;
-    const lanes t132 = d_v2 * t89;
-    const lanes t133 = d_v1 * t114;
-    const lanes t134 = 0.041666666666666664 + d_v6 * (t80 + (t79 + t79 * (-4.0)));
-    const lanes t135 = 0.16666666666666666 + d_v6 * (t80 + t134);
-    const lanes t136 = t83 * t83;
-    const lanes t137 = t136 * (1.0 + t84 * (t82 - 1.0));
-    const lanes t138 = t70 * lanes_select(t15, 0.5 + d_v6 * (t81 + t135), t137);
-    const lanes t139 = t136 * (t83 * (t84 * (2.0 - t82) + (-2.0 - t82)));
-    const lanes t140 = t14 * lanes_select(t15, t135, t139) + t31 * (t88 + d_v6 * t110);
-    const lanes t141 = t70 * t140;
-    const lanes t142 = t82 * (2.0 + 0.5 * t82) + (3.0 + t84 * (t82 - 3.0));
-    const lanes t143 = t14 * lanes_select(t15, t134, t142 * (t136 * t136));
-    const lanes t144 = t70 * (t143 + t31 * (t110 + d_v6 * t107));
-    const lanes t145 = t59 * t109 + d_v4 * t89 - t52 * t111;
-    const lanes t146 = d_v3 * t123 + (t113 + t58 * t121 - d_v0 * t122);
-    const lanes t147 = d_v0 * t114;
-    const lanes t148 = t60 * t109 + d_v5 * t89 - t51 * t111;
     out[0] = d_v0 * t8;
     out[1] = d_v1 * t8;
     out[2] = d_v2 * t8;
@@ -252,55 +165,145 @@ static void block_jacobians(
     out[5] = t52 * t57 + (t50 * t59 + d_v4 * t55);
     out[6] = t51 * t57 + (t50 * t60 + d_v5 * t55);
     out[7] = t9;
-    out_D_d[0] = t61 + d_v0 * t62;
-    out_D_d[1] = t63 + t64;
-    out_D_d[2] = t65 - t66;
-    out_D_d[3] = lanes_of(0.0);
-    out_D_d[4] = lanes_of(0.0);
-    out_D_d[5] = lanes_of(0.0);
-    out_D_d[6] = lanes_of(0.0);
-    out_D_d[7] = t63 - t64;
-    out_D_d[8] = t61 + d_v1 * t67;
-    out_D_d[9] = t68 + t69;
-    out_D_d[10] = lanes_of(0.0);
-    out_D_d[11] = lanes_of(0.0);
-    out_D_d[12] = lanes_of(0.0);
-    out_D_d[13] = lanes_of(0.0);
-    out_D_d[14] = t65 + t66;
-    out_D_d[15] = t68 - t69;
-    out_D_d[16] = t61 + d_v2 * (d_v2 * t41);
-    out_D_d[17] = lanes_of(0.0);
-    out_D_d[18] = lanes_of(0.0);
-    out_D_d[19] = lanes_of(0.0);
-    out_D_d[20] = lanes_of(0.0);
-    out_D_d[21] = t93 + d_v0 * (t120 - t112);
-    out_D_d[22] = t124 + d_v0 * t125 - d_v1 * t112;
-    out_D_d[23] = d_v0 * t127 - t126 - d_v2 * t112;
-    out_D_d[24] = t128 + d_v0 * t129;
-    out_D_d[25] = t130 + d_v0 * t131;
-    out_D_d[26] = d_v0 * t132 - t133;
-    out_D_d[27] = t53 * t144 + (d_v3 * t138 - t58 * t141);
-    out_D_d[28] = d_v1 * t120 - t124 - d_v0 * t145;
-    out_D_d[29] = t93 + d_v1 * (t125 - t145);
-    out_D_d[30] = t146 + d_v1 * t127 - d_v2 * t145;
-    out_D_d[31] = d_v1 * t129 - t130;
-    out_D_d[32] = t128 + d_v1 * t131;
-    out_D_d[33] = t147 + d_v1 * t132;
-    out_D_d[34] = t59 * t144 + (d_v4 * t138 - t52 * t141);
-    out_D_d[35] = t126 + d_v2 * t120 - d_v0 * t148;
-    out_D_d[36] = d_v2 * t125 - t146 - d_v1 * t148;
-    out_D_d[37] = t93 + d_v2 * (t127 - t148);
-    out_D_d[38] = t133 + d_v2 * t129;
-    out_D_d[39] = d_v2 * t131 - t147;
-    out_D_d[40] = t128 + d_v2 * t132;
-    out_D_d[41] = t60 * t144 + (d_v5 * t138 - t51 * t141);
-    out_D_d[42] = lanes_of(0.0);
-    out_D_d[43] = lanes_of(0.0);
-    out_D_d[44] = lanes_of(0.0);
-    out_D_d[45] = lanes_of(0.0);
-    out_D_d[46] = lanes_of(0.0);
-    out_D_d[47] = lanes_of(0.0);
-    out_D_d[48] = lanes_of(1.0);
+    if (want_out_D_d) {
+        const lanes t61 = 1.0 - t0 * t41;
+        const lanes t62 = d_v0 * t41;
+        const lanes t63 = d_v1 * t62;
+        const lanes t64 = d_v2 * t47;
+        const lanes t65 = d_v2 * t62;
+        const lanes t66 = d_v1 * t47;
+        const lanes t67 = d_v1 * t41;
+        const lanes t68 = d_v2 * t67;
+        const lanes t69 = d_v0 * t47;
+        const lanes t70 = lanes_exp(-d_v6);
+        const lanes t71 = 4.1178635428421474e-19 + d_v6 * (t16 + 2.0567783710503175e-20);
+        const lanes t72 = 1.561797933076898e-16 + d_v6 * (8.212278817078935e-18 + d_v6 * t71);
+        const lanes t73 = 4.779485737082404e-14 + d_v6 * (2.8114690303671545e-15 + d_v6 * t72);
+        const lanes t74 = 1.1470745308538233e-11 + d_v6 * (7.647165960397453e-13 + d_v6 * t73);
+        const lanes t75 = 2.0876756992690708e-09 + d_v6 * (1.6059043692023794e-10 + d_v6 * t74);
+        const lanes t76 = 2.755731922395698e-07 + d_v6 * (2.5052108389124404e-08 + d_v6 * t75);
+        const lanes t77 = 2.4801587301587247e-05 + d_v6 * (2.7557319223944413e-06 + d_v6 * t76);
+        const lanes t78 = 0.001388888888888889 + d_v6 * (0.00019841269841270012 + d_v6 * t77);
+        const lanes t79 = 0.008333333333333333 + d_v6 * t78;
+        const lanes t80 = 0.041666666666666664 + d_v6 * t79;
+        const lanes t81 = 0.16666666666666666 + d_v6 * t80;
+        const lanes t82 = lanes_select(t15, lanes_of(-2.75), d_v6);
+        const lanes t83 = -1.0 / t82;
+        const lanes t84 = 1.0 / t70;
+        const lanes t85 = t83 * (1.0 - t84);
+        const lanes t86 = t83 * (1.0 - t85);
+        const lanes t87 = t83 * (0.5 - t86);
+        const lanes t88 = t14 * lanes_select(t15, t81, t87) + t31 * (t41 + t49);
+        const lanes t89 = t70 * t88;
+        const lanes t90 = 0.5 + d_v6 * t81;
+        const lanes t91 = t70 * lanes_select(t15, 1.0 + d_v6 * t90, t85);
+        const lanes t92 = d_v1 * d_v4 + (d_v2 * d_v5 + d_v0 * d_v3);
+        const lanes t93 = (t89 - t47 * t91) * t92;
+        const lanes t94 = t14 * 2.0;
+        const lanes t95 = t83 * (0.16666666666666666 - t87);
+        const lanes t96 = (t39 + 0.16666666666666666 * (t0 - 6.0)) * (t40 * t40);
+        const lanes t97 = lanes_select(t32, t37, t96);
+        const lanes t98 = t14 * lanes_select(t15, t80, t95) + t31 * (t48 + d_v6 * t97);
+        const lanes t99 = t48 + t97 * (-3.0);
+        const lanes t100 = t70 * (t94 * t98 + t31 * (d_v6 * t99 + (t41 + t48 * (-2.0))));
+        const lanes t101 = t14 * lanes_select(t15, t79, t83 * (0.041666666666666664 - t95));
+        const lanes_mask t102 = t0 <= 10.0;
+        const lanes t103 = t0 * (t0 * 8.238352127228608e-22 - 4.09903975815473e-19);
+        const lanes t104 = t0 * (t103 + 1.5618190715606994e-16) - 4.7794722734271995e-14;
+        const lanes t105 = t0 * (t0 * t104 + 1.1470745466476364e-11) - 2.0876756986572595e-09;
+        const lanes t106 = t0 * (t0 * t105 + 2.7557319223993533e-07) - 2.4801587301587488e-05;
+        const lanes t107 = lanes_select(t102, lanes_of(10.0), t0);
+        const lanes t108 = (0.041666666666666664 - t48) / t107;
+        const lanes t109 = lanes_select(t102, 0.001388888888888889 + t0 * t106, t108);
+        const lanes t110 = t101 + t31 * (t97 + d_v6 * t109);
+        const lanes t111 = t70 * (t94 * t110 + t31 * (t99 + d_v6 * (t97 + t109 * (-4.0))));
+        const lanes t112 = t53 * t111 + (d_v3 * t89 - t58 * t100);
+        const lanes t113 = t53 * t89;
+        const lanes t114 = t70 * (t14 * lanes_select(t15, t90, t86) + t31 * (t47 + t56));
+        const lanes t115 = t113 + d_v3 * t91 - t58 * t114;
+        const lanes t116 = t59 * t89;
+        const lanes t117 = t116 + d_v4 * t91 - t52 * t114;
+        const lanes t118 = t60 * t89;
+        const lanes t119 = t118 + d_v5 * t91 - t51 * t114;
+        const lanes t120 = t47 * t115 + t41 * (d_v1 * t119 - d_v2 * t117);
+        const lanes t121 = t89 - t114;
+        const lanes t122 = t91 - t114;
+        const lanes t123 = t92 * (t41 * t91);
+        const lanes t124 = d_v5 * t122 + (t118 + t51 * t121) - d_v2 * t123;
+        const lanes t125 = t47 * t117 + t41 * (d_v2 * t115 - d_v0 * t119);
+        const lanes t126 = d_v4 * t122 + (t116 + t52 * t121) - d_v1 * t123;
+        const lanes t127 = t47 * t119 + t41 * (d_v0 * t117 - d_v1 * t115);
+        const lanes t128 = t91 - t0 * t89;
+        const lanes t129 = d_v0 * t89;
+        const lanes t130 = d_v2 * t114;
+        const lanes t131 = d_v1 * t89;
+        const lanes t132 = d_v2 * t89;
+        const lanes t133 = d_v1 * t114;
+        const lanes t134 = 0.041666666666666664 + d_v6 * (t80 + (t79 + t79 * (-4.0)));
+        const lanes t135 = 0.16666666666666666 + d_v6 * (t80 + t134);
+        const lanes t136 = t83 * t83;
+        const lanes t137 = (t84 * (2.0 - t82) + (-2.0 - t82)) * (t83 * t136);
+        const lanes t138 = t14 * lanes_select(t15, t135, t137) + t31 * (t88 + d_v6 * t98);
+        const lanes t139 = t70 * t138;
+        const lanes t140 = t136 * (1.0 + t84 * (t82 - 1.0));
+        const lanes t141 = t70 * lanes_select(t15, 0.5 + d_v6 * (t81 + t135), t140);
+        const lanes t142 = t84 * (t82 - 3.0) + (3.0 + t82 * (2.0 + 0.5 * t82));
+        const lanes t143 = t14 * lanes_select(t15, t134, t142 * (t136 * t136));
+        const lanes t144 = t70 * (t143 + t31 * (t98 + d_v6 * t110));
+        const lanes t145 = t59 * t111 + (d_v4 * t89 - t52 * t100);
+        const lanes t146 = d_v3 * t122 + (t113 + t58 * t121) - d_v0 * t123;
+        const lanes t147 = d_v0 * t114;
+        const lanes t148 = t60 * t111 + (d_v5 * t89 - t51 * t100);
+        out_D_d[0] = t61 + d_v0 * t62;
+        out_D_d[1] = t63 + t64;
+        out_D_d[2] = t65 - t66;
+        out_D_d[3] = lanes_of(0.0);
+        out_D_d[4] = lanes_of(0.0);
+        out_D_d[5] = lanes_of(0.0);
+        out_D_d[6] = lanes_of(0.0);
+        out_D_d[7] = t63 - t64;
+        out_D_d[8] = t61 + d_v1 * t67;
+        out_D_d[9] = t68 + t69;
+        out_D_d[10] = lanes_of(0.0);
+        out_D_d[11] = lanes_of(0.0);
+        out_D_d[12] = lanes_of(0.0);
+        out_D_d[13] = lanes_of(0.0);
+        out_D_d[14] = t65 + t66;
+        out_D_d[15] = t68 - t69;
+        out_D_d[16] = t61 + d_v2 * (d_v2 * t41);
+        out_D_d[17] = lanes_of(0.0);
+        out_D_d[18] = lanes_of(0.0);
+        out_D_d[19] = lanes_of(0.0);
+        out_D_d[20] = lanes_of(0.0);
+        out_D_d[21] = t93 + d_v0 * (t120 - t112);
+        out_D_d[22] = d_v0 * t125 + (t124 - d_v1 * t112);
+        out_D_d[23] = d_v0 * t127 - t126 - d_v2 * t112;
+        out_D_d[24] = t128 + d_v0 * t129;
+        out_D_d[25] = t130 + d_v0 * t131;
+        out_D_d[26] = d_v0 * t132 - t133;
+        out_D_d[27] = t53 * t144 + (d_v3 * t141 - t58 * t139);
+        out_D_d[28] = d_v1 * t120 - t124 - d_v0 * t145;
+        out_D_d[29] = t93 + d_v1 * (t125 - t145);
+        out_D_d[30] = d_v1 * t127 + (t146 - d_v2 * t145);
+        out_D_d[31] = d_v1 * t129 - t130;
+        out_D_d[32] = t128 + d_v1 * t131;
+        out_D_d[33] = t147 + d_v1 * t132;
+        out_D_d[34] = t59 * t144 + (d_v4 * t141 - t52 * t139);
+        out_D_d[35] = d_v2 * t120 + (t126 - d_v0 * t148);
+        out_D_d[36] = d_v2 * t125 - t146 - d_v1 * t148;
+        out_D_d[37] = t93 + d_v2 * (t127 - t148);
+        out_D_d[38] = t133 + d_v2 * t129;
+        out_D_d[39] = d_v2 * t131 - t147;
+        out_D_d[40] = t128 + d_v2 * t132;
+        out_D_d[41] = t60 * t144 + (d_v5 * t141 - t51 * t139);
+        out_D_d[42] = lanes_of(0.0);
+        out_D_d[43] = lanes_of(0.0);
+        out_D_d[44] = lanes_of(0.0);
+        out_D_d[45] = lanes_of(0.0);
+        out_D_d[46] = lanes_of(0.0);
+        out_D_d[47] = lanes_of(0.0);
+        out_D_d[48] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -316,14 +319,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 49, n, k);
 }
 
-int liegen_groups_sim3_exp_batch(
+LANES_WHOLE int liegen_groups_sim3_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_d.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 57 : 8);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -342,16 +346,14 @@ int liegen_groups_sim3_exp_batch(
             }
             liegen_groups_load(d, 7, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
+                block_jacobians(d_lanes, out_lanes, out_D_d_lanes, want_out_D_d);
             }
             if (!jacobians) {
                 block_value(d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 8, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_d, 49, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_d) liegen_groups_store(out_D_d, 49, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_d_pen);

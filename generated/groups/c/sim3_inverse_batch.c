@@ -22,28 +22,28 @@ static void block_value(
     const lanes x_y = x[5];
     const lanes x_z = x[6];
     const lanes x_scale = x[7];
-    const lanes t0 = x_qz * 2.0;
-    const lanes t1 = x_qz * t0;
-    const lanes t2 = x_qy * 2.0;
-    const lanes t3 = 1.0 - x_qy * t2;
-    const lanes t4 = x_qx * t2;
-    const lanes t5 = x_qw * t0;
-    const lanes t6 = x_qw * t2;
-    const lanes t7 = x_qx * t0;
-    const lanes t8 = x_z * (t6 - t7) + (x_x * (t1 - t3) - x_y * (t4 + t5));
+    const lanes t0 = x_qy * 2.0;
+    const lanes t1 = x_qw * t0;
+    const lanes t2 = x_qz * 2.0;
+    const lanes t3 = x_qx * t2;
+    const lanes t4 = x_qx * t0;
+    const lanes t5 = x_qw * t2;
+    const lanes t6 = x_qz * t2;
+    const lanes t7 = 1.0 - x_qy * t0;
+    const lanes t8 = x_x * (t6 - t7) + (x_z * (t1 - t3) - x_y * (t4 + t5));
     const lanes t9 = 1.0 / x_scale;
-    const lanes t10 = x_qx * 2.0;
-    const lanes t11 = x_qx * t10;
-    const lanes t12 = x_x * (t5 - t4) + x_y * (t11 + (t1 - 1.0));
-    const lanes t13 = x_qy * t0;
-    const lanes t14 = x_qw * t10;
-    const lanes t15 = x_z * (t11 - t3) + (x_y * (t14 - t13) - x_x * (t6 + t7));
+    const lanes t10 = x_qy * t2;
+    const lanes t11 = x_qx * 2.0;
+    const lanes t12 = x_qw * t11;
+    const lanes t13 = x_x * (t5 - t4) - x_z * (t10 + t12);
+    const lanes t14 = x_qx * t11;
+    const lanes t15 = x_z * (t14 - t7) + (x_y * (t12 - t10) - x_x * (t1 + t3));
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
     out[4] = t8 * t9;
-    out[5] = t9 * (t12 - x_z * (t13 + t14));
+    out[5] = t9 * (x_y * (t6 + (t14 - 1.0)) + t13);
     out[6] = t9 * t15;
     out[7] = t9;
 }
@@ -52,7 +52,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -62,85 +63,87 @@ static void block_jacobians(
     const lanes x_y = x[5];
     const lanes x_z = x[6];
     const lanes x_scale = x[7];
-    const lanes t0 = x_qy * (-2.0);
-    const lanes t1 = -1.0 - x_qy * t0;
-    const lanes t2 = x_qz * (-2.0);
-    const lanes t3 = x_qz * t2;
+    const lanes t0 = x_qz * (-2.0);
+    const lanes t1 = x_qx * t0;
+    const lanes t2 = x_qy * (-2.0);
+    const lanes t3 = x_qw * t2;
     const lanes t4 = t1 - t3;
-    const lanes t5 = x_qx * t0;
-    const lanes t6 = x_qw * t2;
+    const lanes t5 = x_qx * t2;
+    const lanes t6 = x_qw * t0;
     const lanes t7 = t5 + t6;
-    const lanes t8 = x_qx * t2;
-    const lanes t9 = x_qw * t0;
+    const lanes t8 = -1.0 - x_qy * t2;
+    const lanes t9 = x_qz * t0;
     const lanes t10 = t8 - t9;
     const lanes t11 = 1.0 / x_scale;
-    const lanes t12 = t5 - t6;
+    const lanes t12 = x_qy * t0;
     const lanes t13 = x_qx * 2.0;
-    const lanes t14 = x_qx * t13;
-    const lanes t15 = t14 + (-1.0 - t3);
-    const lanes t16 = x_qy * t2;
-    const lanes t17 = x_qw * t13;
-    const lanes t18 = t16 - t17;
-    const lanes t19 = t16 + t17;
-    const lanes t20 = t9 + t8;
-    const lanes t21 = t1 + t14;
+    const lanes t14 = x_qw * t13;
+    const lanes t15 = t12 - t14;
+    const lanes t16 = t5 - t6;
+    const lanes t17 = x_qx * t13;
+    const lanes t18 = t17 - 1.0 - t9;
+    const lanes t19 = t12 + t14;
+    const lanes t20 = t3 + t1;
+    const lanes t21 = t8 + t17;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out[4] = (x_z * t10 + (x_x * t4 + x_y * t7)) * t11;
-    out[5] = t11 * (x_z * t18 + (x_x * t12 + x_y * t15));
+    out[4] = (x_x * t10 + (x_z * t4 + x_y * t7)) * t11;
+    out[5] = t11 * (x_y * t18 + (x_z * t15 + x_x * t16));
     out[6] = t11 * (x_z * t21 + (x_y * t19 + x_x * t20));
     out[7] = t11;
-    out_D_x[0] = t4;
-    out_D_x[1] = t12;
-    out_D_x[2] = t20;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = t7;
-    out_D_x[8] = t15;
-    out_D_x[9] = t19;
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = t10;
-    out_D_x[15] = t18;
-    out_D_x[16] = t21;
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(0.0);
-    out_D_x[20] = lanes_of(0.0);
-    out_D_x[21] = x_y * t10 - t7 * x_z;
-    out_D_x[22] = x_y * t18 - x_z * t15;
-    out_D_x[23] = x_y * t21 - x_z * t19;
-    out_D_x[24] = t4 * x_scale;
-    out_D_x[25] = x_scale * t12;
-    out_D_x[26] = x_scale * t20;
-    out_D_x[27] = x_x;
-    out_D_x[28] = t4 * x_z - x_x * t10;
-    out_D_x[29] = x_z * t12 - x_x * t18;
-    out_D_x[30] = x_z * t20 - x_x * t21;
-    out_D_x[31] = t7 * x_scale;
-    out_D_x[32] = x_scale * t15;
-    out_D_x[33] = x_scale * t19;
-    out_D_x[34] = x_y;
-    out_D_x[35] = x_x * t7 - t4 * x_y;
-    out_D_x[36] = x_x * t15 - x_y * t12;
-    out_D_x[37] = x_x * t19 - x_y * t20;
-    out_D_x[38] = t10 * x_scale;
-    out_D_x[39] = x_scale * t18;
-    out_D_x[40] = x_scale * t21;
-    out_D_x[41] = x_z;
-    out_D_x[42] = lanes_of(0.0);
-    out_D_x[43] = lanes_of(0.0);
-    out_D_x[44] = lanes_of(0.0);
-    out_D_x[45] = lanes_of(0.0);
-    out_D_x[46] = lanes_of(0.0);
-    out_D_x[47] = lanes_of(0.0);
-    out_D_x[48] = lanes_of(-1.0);
+    if (want_out_D_x) {
+        out_D_x[0] = t10;
+        out_D_x[1] = t16;
+        out_D_x[2] = t20;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = t7;
+        out_D_x[8] = t18;
+        out_D_x[9] = t19;
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = t4;
+        out_D_x[15] = t15;
+        out_D_x[16] = t21;
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(0.0);
+        out_D_x[20] = lanes_of(0.0);
+        out_D_x[21] = t4 * x_y - x_z * t7;
+        out_D_x[22] = x_y * t15 - x_z * t18;
+        out_D_x[23] = x_y * t21 - x_z * t19;
+        out_D_x[24] = t10 * x_scale;
+        out_D_x[25] = x_scale * t16;
+        out_D_x[26] = x_scale * t20;
+        out_D_x[27] = x_x;
+        out_D_x[28] = x_z * t10 - t4 * x_x;
+        out_D_x[29] = x_z * t16 - x_x * t15;
+        out_D_x[30] = x_z * t20 - x_x * t21;
+        out_D_x[31] = t7 * x_scale;
+        out_D_x[32] = x_scale * t18;
+        out_D_x[33] = x_scale * t19;
+        out_D_x[34] = x_y;
+        out_D_x[35] = t7 * x_x - x_y * t10;
+        out_D_x[36] = x_x * t18 - x_y * t16;
+        out_D_x[37] = x_x * t19 - x_y * t20;
+        out_D_x[38] = t4 * x_scale;
+        out_D_x[39] = x_scale * t15;
+        out_D_x[40] = x_scale * t21;
+        out_D_x[41] = x_z;
+        out_D_x[42] = lanes_of(0.0);
+        out_D_x[43] = lanes_of(0.0);
+        out_D_x[44] = lanes_of(0.0);
+        out_D_x[45] = lanes_of(0.0);
+        out_D_x[46] = lanes_of(0.0);
+        out_D_x[47] = lanes_of(0.0);
+        out_D_x[48] = lanes_of(-1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -156,14 +159,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 49, n, k);
 }
 
-int liegen_groups_sim3_inverse_batch(
+LANES_WHOLE int liegen_groups_sim3_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 57 : 8);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -182,16 +186,14 @@ int liegen_groups_sim3_inverse_batch(
             }
             liegen_groups_load(x, 8, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 8, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

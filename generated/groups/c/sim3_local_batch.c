@@ -141,7 +141,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -216,11 +218,11 @@ static void block_jacobians(
     const lanes t55 = t42 * (t42 * t54 + 0.001388888888888889) - 0.008333333333333333;
     const lanes t56 = 0.041666666666666664 + t42 * t55;
     const lanes t57 = 1.0 / t44;
-    const lanes t58 = t57 * (1.0 - t46);
-    const lanes t59 = t57 * (t57 * (t57 * (t46 * (2.0 + t44) + (t44 - 2.0))));
+    const lanes t58 = (t46 * (2.0 + t44) + (t44 - 2.0)) * (t57 * (t57 * t57));
+    const lanes t59 = (1.0 - t46) * t57;
     const lanes t60 = t42 * (t55 * 4.0 + (t56 - t55)) - 0.041666666666666664 - t56;
     const lanes t61 = 0.5 + t42 * (t42 * t56 - 0.16666666666666666);
-    const lanes t62 = lanes_select(t43, 1.0 - t42 * t61, t58);
+    const lanes t62 = lanes_select(t43, 1.0 - t42 * t61, t59);
     const lanes t63 = t26 * t25;
     const lanes t64 = t15 * (t15 * 1.79038541600431e-20 - 8.189756479116784e-18);
     const lanes t65 = t15 * (t15 * (t64 + 2.811147137722584e-15) - 7.647145552981236e-13);
@@ -259,22 +261,22 @@ static void block_jacobians(
     const lanes t98 = x_qw * t96;
     const lanes t99 = x_qy * t97;
     const lanes t100 = x_qy * 2.0;
-    const lanes t101 = x_qx * t97;
-    const lanes t102 = x_qw * t100;
-    const lanes t103 = x_qx * t96;
-    const lanes t104 = 1.0 - x_qy * t100;
-    const lanes t105 = x_qz * t97;
-    const lanes t106 = x_qw * t97;
-    const lanes t107 = x_qx * t100;
-    const lanes t108 = x_z - y_z;
-    const lanes t109 = x_x - y_x;
-    const lanes t110 = t108 * (t99 + t98) + t109 * (t107 - t106);
+    const lanes t101 = x_qw * t97;
+    const lanes t102 = x_qx * t100;
+    const lanes t103 = x_qx * t97;
+    const lanes t104 = x_qw * t100;
+    const lanes t105 = x_qx * t96;
+    const lanes t106 = 1.0 - x_qy * t100;
+    const lanes t107 = x_qz * t97;
+    const lanes t108 = x_x - y_x;
+    const lanes t109 = x_z - y_z;
+    const lanes t110 = t109 * (t99 + t98) + t108 * (t102 - t101);
     const lanes t111 = x_y - y_y;
-    const lanes t112 = t109 * (t102 + t101) + (t108 * (t104 - t103) + t111 * (t99 - t98));
-    const lanes t113 = t108 * (t102 - t101) + t109 * (t105 - t104) - t111 * (t107 + t106);
-    const lanes t114 = t41 * (t111 * (1.0 - t103 - t105) + t110);
+    const lanes t112 = t109 * (t106 - t105) + (t111 * (t99 - t98) + t108 * (t104 + t103));
+    const lanes t113 = (t107 - t106) * t108 + ((t104 - t103) * t109 - (t102 + t101) * t111);
+    const lanes t114 = t41 * (t111 * (1.0 - t105 - t107) + t110);
     const lanes t115 = t41 * t112;
-    const lanes t116 = t41 * t113;
+    const lanes t116 = t113 * t41;
     const lanes_mask t117 = t73 + t15 < 8.673617379884035e-19;
     const lanes t118 = lanes_select(t117, lanes_of(8.673617379884035e-19), t15);
     const lanes t119 = t73 + t118;
@@ -284,8 +286,8 @@ static void block_jacobians(
     const lanes t123 = t122 + t120 * t40;
     const lanes t124 = t13 * t115 - t11 * t114;
     const lanes t125 = t11 * t116 + t12 * t115;
-    const lanes t126 = t121 * lanes_select(t43, t61, t57 * (1.0 - t58));
-    const lanes t127 = t29 * lanes_select(t43, 0.16666666666666666 + t42 * t60, t59);
+    const lanes t126 = t121 * lanes_select(t43, t61, t57 * (1.0 - t59));
+    const lanes t127 = t29 * lanes_select(t43, 0.16666666666666666 + t42 * t60, t58);
     const lanes t128 = t70 + t32 * (-2.0);
     const lanes t129 = t12 * t114 + t13 * t116;
     const lanes t130 = t121 * lanes_select(t74, t85, t76 * (-0.16666666666666666 - t78));
@@ -300,11 +302,11 @@ static void block_jacobians(
     const lanes t139 = (-2.0 * t94 - t86) * t138;
     const lanes t140 = 0.5 / t29;
     const lanes t141 = t128 * t140;
-    const lanes t142 = t136 * t124 + t116 * t133 - t137 * (t13 * t129 + t11 * t125);
-    const lanes t143 = t137 * (t12 * t125 + t13 * t124) + (t136 * t129 - t115 * t133);
+    const lanes t142 = t116 * t133 + t136 * t124 - t137 * (t13 * t129 + t11 * t125);
+    const lanes t143 = t137 * (t12 * t125 + t13 * t124) + (t136 * t129 - t133 * t115);
     const lanes t144 = t128 * t131 + t29 * (2.0 * t123 - t130 - t120 * t72);
     const lanes t145 = t121 * (t131 * (t141 - t139) - t123);
-    const lanes t146 = t137 * (t12 * t129 - t11 * t124) - (t136 * t125 + t114 * t133);
+    const lanes t146 = t137 * (t12 * t129 - t11 * t124) - (t133 * t114 + t136 * t125);
     const lanes t147 = t144 * (t140 * (2.0 * t138));
     const lanes t148 = t13 * t146 + (t11 * t143 + t12 * t142);
     const lanes t149 = t12 * t146 - t13 * t142;
@@ -319,8 +321,6 @@ static void block_jacobians(
     const lanes t158 = t155 - t154;
     const lanes t159 = t149 * t158 + t11 * t157;
     const lanes t160 = t42 * t154;
-    const lanes t161 = -0.5 - t160;
-    const lanes t162 = 0.5 - t160;
     const lanes t163 = t11 * t142 - t12 * t143;
     const lanes t164 = t163 * t158 + t13 * t157;
     const lanes t165 = t11 * t146 - t13 * t143;
@@ -329,8 +329,6 @@ static void block_jacobians(
     const lanes t168 = t29 * t167;
     const lanes t169 = t15 * t168 - 1.0 - t73 * t139;
     const lanes t170 = t42 * 0.5;
-    const lanes t171 = t169 - t170;
-    const lanes t172 = t169 + t170;
     const lanes t173 = t11 * t168;
     const lanes t174 = t13 * t168;
     const lanes t175 = t12 * t168;
@@ -351,30 +349,14 @@ static void block_jacobians(
     const lanes t190 = t13 * t185 - t12 * t183;
     const lanes t191 = t13 * t181 + t163 * t186;
     const lanes t192 = t42 * (t153 - t152);
-    const lanes t193 = 0.5 - t192;
-    const lanes t194 = 0.5 + t192;
     const lanes t195 = t11 * t185 - t12 * t184;
-    const lanes t196 = t142 * t194 - t187;
-    const lanes t197 = t187 + t142 * t193;
     const lanes t198 = t42 * t155;
-    const lanes t199 = 0.5 + t198;
-    const lanes t200 = t13 * t199;
     const lanes t201 = t12 * t173;
     const lanes t202 = t11 * t175;
-    const lanes t203 = 0.5 - t198;
-    const lanes t204 = t13 * t203;
-    const lanes t205 = t12 * t199;
     const lanes t206 = t11 * t174;
-    const lanes t207 = t12 * t203;
     const lanes t208 = t13 * t173;
-    const lanes t209 = t189 + t143 * t193;
-    const lanes t210 = t189 - t143 * t194;
-    const lanes t211 = t11 * t199;
     const lanes t212 = t13 * t175;
-    const lanes t213 = t11 * t203;
     const lanes t214 = t12 * t174;
-    const lanes t215 = t191 + t146 * t193;
-    const lanes t216 = t191 - t146 * t194;
     const lanes t217 = t155 * t148;
     const lanes t218 = t184 * (t11 * (-2.0)) - t217;
     const lanes t219 = t183 * (t13 * (-2.0)) - t217;
@@ -404,104 +386,128 @@ static void block_jacobians(
     out[4] = t146;
     out[5] = t143;
     out[6] = t42;
-    out_D_x[0] = -t238;
-    out_D_x[1] = -t234;
-    out_D_x[2] = -t231;
-    out_D_x[3] = lanes_of(0.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = lanes_of(0.0);
-    out_D_x[7] = t233;
-    out_D_x[8] = -t237;
-    out_D_x[9] = t224;
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(0.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = lanes_of(0.0);
-    out_D_x[14] = -t230;
-    out_D_x[15] = -t225;
-    out_D_x[16] = -t236;
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(0.0);
-    out_D_x[20] = lanes_of(0.0);
-    out_D_x[21] = -t220;
-    out_D_x[22] = t210 - t190;
-    out_D_x[23] = -(t216 + t195);
-    out_D_x[24] = t172 - t178;
-    out_D_x[25] = -(t214 + t213);
-    out_D_x[26] = t204 - t201;
-    out_D_x[27] = t166 - t142 * t162;
-    out_D_x[28] = -(t190 + t210);
-    out_D_x[29] = -t219;
-    out_D_x[30] = t188 - t196;
-    out_D_x[31] = t213 - t212;
-    out_D_x[32] = t172 - t177;
-    out_D_x[33] = -(t208 + t207);
-    out_D_x[34] = t164 - t146 * t162;
-    out_D_x[35] = t216 - t195;
-    out_D_x[36] = t188 + t196;
-    out_D_x[37] = -t218;
-    out_D_x[38] = -(t204 + t202);
-    out_D_x[39] = t207 - t206;
-    out_D_x[40] = t172 - t176;
-    out_D_x[41] = t159 - t143 * t162;
-    out_D_x[42] = lanes_of(0.0);
-    out_D_x[43] = lanes_of(0.0);
-    out_D_x[44] = lanes_of(0.0);
-    out_D_x[45] = lanes_of(0.0);
-    out_D_x[46] = lanes_of(0.0);
-    out_D_x[47] = lanes_of(0.0);
-    out_D_x[48] = lanes_of(-1.0);
-    out_D_y[0] = t238;
-    out_D_y[1] = -t233;
-    out_D_y[2] = t230;
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(0.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = t234;
-    out_D_y[8] = t237;
-    out_D_y[9] = t225;
-    out_D_y[10] = lanes_of(0.0);
-    out_D_y[11] = lanes_of(0.0);
-    out_D_y[12] = lanes_of(0.0);
-    out_D_y[13] = lanes_of(0.0);
-    out_D_y[14] = t231;
-    out_D_y[15] = -t224;
-    out_D_y[16] = t236;
-    out_D_y[17] = lanes_of(0.0);
-    out_D_y[18] = lanes_of(0.0);
-    out_D_y[19] = lanes_of(0.0);
-    out_D_y[20] = lanes_of(0.0);
-    out_D_y[21] = t220;
-    out_D_y[22] = t190 - t209;
-    out_D_y[23] = t195 + t215;
-    out_D_y[24] = t178 - t171;
-    out_D_y[25] = t214 - t211;
-    out_D_y[26] = t201 + t200;
-    out_D_y[27] = t142 * t161 - t166;
-    out_D_y[28] = t190 + t209;
-    out_D_y[29] = t219;
-    out_D_y[30] = -(t188 + t197);
-    out_D_y[31] = t212 + t211;
-    out_D_y[32] = t177 - t171;
-    out_D_y[33] = t208 - t205;
-    out_D_y[34] = t146 * t161 - t164;
-    out_D_y[35] = t195 - t215;
-    out_D_y[36] = t197 - t188;
-    out_D_y[37] = t218;
-    out_D_y[38] = t202 - t200;
-    out_D_y[39] = t206 + t205;
-    out_D_y[40] = t176 - t171;
-    out_D_y[41] = t143 * t161 - t159;
-    out_D_y[42] = lanes_of(0.0);
-    out_D_y[43] = lanes_of(0.0);
-    out_D_y[44] = lanes_of(0.0);
-    out_D_y[45] = lanes_of(0.0);
-    out_D_y[46] = lanes_of(0.0);
-    out_D_y[47] = lanes_of(0.0);
-    out_D_y[48] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t162 = 0.5 - t160;
+        const lanes t172 = t169 + t170;
+        const lanes t194 = 0.5 + t192;
+        const lanes t196 = t142 * t194 - t187;
+        const lanes t203 = 0.5 - t198;
+        const lanes t204 = t13 * t203;
+        const lanes t207 = t12 * t203;
+        const lanes t210 = t189 - t143 * t194;
+        const lanes t213 = t11 * t203;
+        const lanes t216 = t191 - t146 * t194;
+        out_D_x[0] = -t238;
+        out_D_x[1] = -t234;
+        out_D_x[2] = -t231;
+        out_D_x[3] = lanes_of(0.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = lanes_of(0.0);
+        out_D_x[7] = t233;
+        out_D_x[8] = -t237;
+        out_D_x[9] = t224;
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(0.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = lanes_of(0.0);
+        out_D_x[14] = -t230;
+        out_D_x[15] = -t225;
+        out_D_x[16] = -t236;
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(0.0);
+        out_D_x[20] = lanes_of(0.0);
+        out_D_x[21] = -t220;
+        out_D_x[22] = t210 - t190;
+        out_D_x[23] = -(t216 + t195);
+        out_D_x[24] = t172 - t178;
+        out_D_x[25] = -(t214 + t213);
+        out_D_x[26] = t204 - t201;
+        out_D_x[27] = t166 - t142 * t162;
+        out_D_x[28] = -(t190 + t210);
+        out_D_x[29] = -t219;
+        out_D_x[30] = t188 - t196;
+        out_D_x[31] = t213 - t212;
+        out_D_x[32] = t172 - t177;
+        out_D_x[33] = -(t208 + t207);
+        out_D_x[34] = t164 - t146 * t162;
+        out_D_x[35] = t216 - t195;
+        out_D_x[36] = t188 + t196;
+        out_D_x[37] = -t218;
+        out_D_x[38] = -(t204 + t202);
+        out_D_x[39] = t207 - t206;
+        out_D_x[40] = t172 - t176;
+        out_D_x[41] = t159 - t143 * t162;
+        out_D_x[42] = lanes_of(0.0);
+        out_D_x[43] = lanes_of(0.0);
+        out_D_x[44] = lanes_of(0.0);
+        out_D_x[45] = lanes_of(0.0);
+        out_D_x[46] = lanes_of(0.0);
+        out_D_x[47] = lanes_of(0.0);
+        out_D_x[48] = lanes_of(-1.0);
+    }
+    if (want_out_D_y) {
+        const lanes t161 = -0.5 - t160;
+        const lanes t171 = t169 - t170;
+        const lanes t193 = 0.5 - t192;
+        const lanes t197 = t187 + t142 * t193;
+        const lanes t199 = 0.5 + t198;
+        const lanes t200 = t13 * t199;
+        const lanes t205 = t12 * t199;
+        const lanes t209 = t189 + t143 * t193;
+        const lanes t211 = t11 * t199;
+        const lanes t215 = t191 + t146 * t193;
+        out_D_y[0] = t238;
+        out_D_y[1] = -t233;
+        out_D_y[2] = t230;
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(0.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = t234;
+        out_D_y[8] = t237;
+        out_D_y[9] = t225;
+        out_D_y[10] = lanes_of(0.0);
+        out_D_y[11] = lanes_of(0.0);
+        out_D_y[12] = lanes_of(0.0);
+        out_D_y[13] = lanes_of(0.0);
+        out_D_y[14] = t231;
+        out_D_y[15] = -t224;
+        out_D_y[16] = t236;
+        out_D_y[17] = lanes_of(0.0);
+        out_D_y[18] = lanes_of(0.0);
+        out_D_y[19] = lanes_of(0.0);
+        out_D_y[20] = lanes_of(0.0);
+        out_D_y[21] = t220;
+        out_D_y[22] = t190 - t209;
+        out_D_y[23] = t195 + t215;
+        out_D_y[24] = t178 - t171;
+        out_D_y[25] = t214 - t211;
+        out_D_y[26] = t201 + t200;
+        out_D_y[27] = t142 * t161 - t166;
+        out_D_y[28] = t190 + t209;
+        out_D_y[29] = t219;
+        out_D_y[30] = -(t188 + t197);
+        out_D_y[31] = t212 + t211;
+        out_D_y[32] = t177 - t171;
+        out_D_y[33] = t208 - t205;
+        out_D_y[34] = t146 * t161 - t164;
+        out_D_y[35] = t195 - t215;
+        out_D_y[36] = t197 - t188;
+        out_D_y[37] = t218;
+        out_D_y[38] = t202 - t200;
+        out_D_y[39] = t206 + t205;
+        out_D_y[40] = t176 - t171;
+        out_D_y[41] = t143 * t161 - t159;
+        out_D_y[42] = lanes_of(0.0);
+        out_D_y[43] = lanes_of(0.0);
+        out_D_y[44] = lanes_of(0.0);
+        out_D_y[45] = lanes_of(0.0);
+        out_D_y[46] = lanes_of(0.0);
+        out_D_y[47] = lanes_of(0.0);
+        out_D_y[48] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -521,7 +527,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 49, n, k);
 }
 
-int liegen_groups_sim3_local_batch(
+LANES_WHOLE int liegen_groups_sim3_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -530,7 +536,9 @@ int liegen_groups_sim3_local_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 105 : 7);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -553,17 +561,16 @@ int liegen_groups_sim3_local_batch(
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(y, 8, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 7, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 49, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 49, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 49, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

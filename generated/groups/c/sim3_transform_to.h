@@ -61,7 +61,7 @@ int liegen_groups_sim3_transform_to(
     double *out_D_x,
     double *out_D_p);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_sim3_transform_to_batch(
     ptrdiff_t n,
     liegen_groups_in x,

@@ -27,27 +27,27 @@ static void block_value(
     const lanes p_y = p[1];
     const lanes p_z = p[2];
     const lanes t0 = 2.0 * x_qz;
-    const lanes t1 = x_qz * t0;
-    const lanes t2 = x_qy * 2.0;
-    const lanes t3 = 1.0 - x_qy * t2;
-    const lanes t4 = x_x - p_x;
-    const lanes t5 = t2 * x_qx;
-    const lanes t6 = t0 * x_qw;
-    const lanes t7 = x_y - p_y;
-    const lanes t8 = t2 * x_qw;
-    const lanes t9 = t0 * x_qx;
-    const lanes t10 = x_z - p_z;
-    const lanes t11 = (t8 - t9) * t10 + ((t1 - t3) * t4 - (t5 + t6) * t7);
-    const lanes t12 = 1.0 / x_scale;
-    const lanes t13 = 2.0 * x_qx;
-    const lanes t14 = x_qx * t13;
-    const lanes t15 = t4 * (t6 - t5) + t7 * (t14 + (t1 - 1.0));
-    const lanes t16 = x_qy * t0;
-    const lanes t17 = x_qw * t13;
-    const lanes t18 = t10 * (t14 - t3) + (t7 * (t17 - t16) - t4 * (t8 + t9));
-    out[0] = t11 * t12;
-    out[1] = t12 * (t15 - t10 * (t16 + t17));
-    out[2] = t12 * t18;
+    const lanes t1 = 2.0 * x_qx;
+    const lanes t2 = x_qy * t0;
+    const lanes t3 = x_qw * t1;
+    const lanes t4 = x_qy * 2.0;
+    const lanes t5 = t4 * x_qx;
+    const lanes t6 = x_qw * t0;
+    const lanes t7 = t0 * x_qx;
+    const lanes t8 = t4 * x_qw;
+    const lanes t9 = x_x - p_x;
+    const lanes t10 = x_y - p_y;
+    const lanes t11 = x_z - p_z;
+    const lanes t12 = t9 * (t6 - t5) - t11 * (t2 + t3);
+    const lanes t13 = x_qx * t1;
+    const lanes t14 = x_qz * t0;
+    const lanes t15 = 1.0 - x_qy * t4;
+    const lanes t16 = t11 * (t13 - t15) + (t10 * (t3 - t2) - t9 * (t8 + t7));
+    const lanes t17 = 1.0 / x_scale;
+    const lanes t18 = (t14 - t15) * t9 + ((t8 - t7) * t11 - (t5 + t6) * t10);
+    out[0] = t18 * t17;
+    out[1] = t17 * (t10 * (t14 + (t13 - 1.0)) + t12);
+    out[2] = t17 * t16;
 }
 
 /* Value and Jacobians of a block. */
@@ -56,7 +56,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -69,70 +71,74 @@ static void block_jacobians(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = 2.0 * x_qz;
-    const lanes t1 = x_qy * 2.0;
-    const lanes t2 = t0 * x_qw;
-    const lanes t3 = t1 * x_qx;
+    const lanes t0 = 2.0 * x_qx;
+    const lanes t1 = 2.0 * x_qz;
+    const lanes t2 = x_qw * t0;
+    const lanes t3 = x_qy * t1;
     const lanes t4 = t3 - t2;
     const lanes t5 = t3 + t2;
-    const lanes t6 = 1.0 - x_qy * t1;
-    const lanes t7 = 2.0 * x_qx;
-    const lanes t8 = x_qz * t0;
-    const lanes t9 = x_qx * t7;
-    const lanes t10 = 1.0 - t8 - t9;
-    const lanes t11 = t6 - t8;
-    const lanes t12 = t6 - t9;
-    const lanes t13 = t1 * x_qw;
-    const lanes t14 = x_qw * t7;
-    const lanes t15 = t0 * x_qx;
-    const lanes t16 = x_qy * t0;
-    const lanes t17 = t13 + t15;
-    const lanes t18 = x_x - p_x;
-    const lanes t19 = t16 - t14;
-    const lanes t20 = x_y - p_y;
-    const lanes t21 = t16 + t14;
-    const lanes t22 = t15 - t13;
-    const lanes t23 = x_z - p_z;
+    const lanes t6 = x_qy * 2.0;
+    const lanes t7 = x_qw * t1;
+    const lanes t8 = t6 * x_qx;
+    const lanes t9 = t8 - t7;
+    const lanes t10 = t8 + t7;
+    const lanes t11 = t1 * x_qx;
+    const lanes t12 = t6 * x_qw;
+    const lanes t13 = t12 + t11;
+    const lanes t14 = t11 - t12;
+    const lanes t15 = x_x - p_x;
+    const lanes t16 = x_y - p_y;
+    const lanes t17 = x_z - p_z;
+    const lanes t18 = x_qx * t0;
+    const lanes t19 = x_qz * t1;
+    const lanes t20 = 1.0 - x_qy * t6;
+    const lanes t21 = 1.0 - t18 - t19;
+    const lanes t22 = t20 - t18;
+    const lanes t23 = t20 - t19;
     const lanes t24 = 1.0 / x_scale;
-    const lanes t25 = t24 * (t23 * t12 + (t20 * t19 + t18 * t17));
-    const lanes t26 = t24 * (t23 * t21 + (t18 * t4 + t20 * t10));
-    const lanes t27 = (t22 * t23 + (t11 * t18 + t5 * t20)) * t24;
+    const lanes t25 = t24 * (t17 * t22 + (t16 * t4 + t15 * t13));
+    const lanes t26 = t24 * (t16 * t21 + (t17 * t5 + t15 * t9));
+    const lanes t27 = (t23 * t15 + (t14 * t17 + t10 * t16)) * t24;
     const lanes t28 = -t25;
     const lanes t29 = -t26;
     const lanes t30 = -t27;
     out[0] = t30;
     out[1] = t29;
     out[2] = t28;
-    out_D_x[0] = lanes_of(0.0);
-    out_D_x[1] = t25;
-    out_D_x[2] = t29;
-    out_D_x[3] = lanes_of(-1.0);
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = lanes_of(0.0);
-    out_D_x[6] = t27;
-    out_D_x[7] = t28;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_x[9] = t27;
-    out_D_x[10] = lanes_of(0.0);
-    out_D_x[11] = lanes_of(-1.0);
-    out_D_x[12] = lanes_of(0.0);
-    out_D_x[13] = t26;
-    out_D_x[14] = t26;
-    out_D_x[15] = t30;
-    out_D_x[16] = lanes_of(0.0);
-    out_D_x[17] = lanes_of(0.0);
-    out_D_x[18] = lanes_of(0.0);
-    out_D_x[19] = lanes_of(-1.0);
-    out_D_x[20] = t25;
-    out_D_p[0] = t11 * t24;
-    out_D_p[1] = t5 * t24;
-    out_D_p[2] = t22 * t24;
-    out_D_p[3] = t24 * t4;
-    out_D_p[4] = t24 * t10;
-    out_D_p[5] = t24 * t21;
-    out_D_p[6] = t24 * t17;
-    out_D_p[7] = t24 * t19;
-    out_D_p[8] = t24 * t12;
+    if (want_out_D_x) {
+        out_D_x[0] = lanes_of(0.0);
+        out_D_x[1] = t25;
+        out_D_x[2] = t29;
+        out_D_x[3] = lanes_of(-1.0);
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = lanes_of(0.0);
+        out_D_x[6] = t27;
+        out_D_x[7] = t28;
+        out_D_x[8] = lanes_of(0.0);
+        out_D_x[9] = t27;
+        out_D_x[10] = lanes_of(0.0);
+        out_D_x[11] = lanes_of(-1.0);
+        out_D_x[12] = lanes_of(0.0);
+        out_D_x[13] = t26;
+        out_D_x[14] = t26;
+        out_D_x[15] = t30;
+        out_D_x[16] = lanes_of(0.0);
+        out_D_x[17] = lanes_of(0.0);
+        out_D_x[18] = lanes_of(0.0);
+        out_D_x[19] = lanes_of(-1.0);
+        out_D_x[20] = t25;
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = t23 * t24;
+        out_D_p[1] = t10 * t24;
+        out_D_p[2] = t14 * t24;
+        out_D_p[3] = t24 * t9;
+        out_D_p[4] = t24 * t21;
+        out_D_p[5] = t24 * t5;
+        out_D_p[6] = t24 * t13;
+        out_D_p[7] = t24 * t4;
+        out_D_p[8] = t24 * t22;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -152,7 +158,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 9, n, k);
 }
 
-int liegen_groups_sim3_transform_to_batch(
+LANES_WHOLE int liegen_groups_sim3_transform_to_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -161,7 +167,9 @@ int liegen_groups_sim3_transform_to_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 33 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -184,17 +192,16 @@ int liegen_groups_sim3_transform_to_batch(
             liegen_groups_load(x, 8, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 21, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 21, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

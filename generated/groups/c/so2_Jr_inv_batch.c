@@ -29,7 +29,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out, 1, n, k);
 }
 
-int liegen_groups_so2_Jr_inv_batch(
+LANES_WHOLE int liegen_groups_so2_Jr_inv_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,

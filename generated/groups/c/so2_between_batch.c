@@ -29,7 +29,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
@@ -37,8 +39,12 @@ static void block_jacobians(
     const lanes y_s = y[1];
     out[0] = x_c * y_c + x_s * y_s;
     out[1] = x_c * y_s - x_s * y_c;
-    out_D_x[0] = lanes_of(-1.0);
-    out_D_y[0] = lanes_of(1.0);
+    if (want_out_D_x) {
+        out_D_x[0] = lanes_of(-1.0);
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -58,7 +64,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 1, n, k);
 }
 
-int liegen_groups_so2_between_batch(
+LANES_WHOLE int liegen_groups_so2_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -67,7 +73,9 @@ int liegen_groups_so2_between_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 4 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -90,17 +98,16 @@ int liegen_groups_so2_between_batch(
             liegen_groups_load(x, 2, k, count, x_lanes);
             liegen_groups_load(y, 2, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 1, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 1, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 1, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 1, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

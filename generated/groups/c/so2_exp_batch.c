@@ -24,13 +24,16 @@ static void block_value(
 static void block_jacobians(
     const lanes *d,
     lanes *out,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_d)
 {
     const lanes d_0 = d[0];
     lanes t0, t1; lanes_sincos(d_0, &t0, &t1);
     out[0] = t1;
     out[1] = t0;
-    out_D_d[0] = lanes_of(1.0);
+    if (want_out_D_d) {
+        out_D_d[0] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -46,14 +49,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 1, n, k);
 }
 
-int liegen_groups_so2_exp_batch(
+LANES_WHOLE int liegen_groups_so2_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,
     liegen_groups_out out,
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_d.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 3 : 2);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -72,16 +76,14 @@ int liegen_groups_so2_exp_batch(
             }
             liegen_groups_load(d, 1, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(d_lanes, out_lanes, out_D_d_lanes);
+                block_jacobians(d_lanes, out_lanes, out_D_d_lanes, want_out_D_d);
             }
             if (!jacobians) {
                 block_value(d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 2, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_d, 1, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_d) liegen_groups_store(out_D_d, 1, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_d_pen);

@@ -59,7 +59,7 @@ int liegen_groups_so2_local(
     double *out_D_x,
     double *out_D_y);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_so2_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,

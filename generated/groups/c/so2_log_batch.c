@@ -23,12 +23,15 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_c = x[0];
     const lanes x_s = x[1];
     out[0] = lanes_atan2(x_s, x_c);
-    out_D_x[0] = lanes_of(1.0);
+    if (want_out_D_x) {
+        out_D_x[0] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -44,14 +47,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 1, n, k);
 }
 
-int liegen_groups_so2_log_batch(
+LANES_WHOLE int liegen_groups_so2_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 2 : 1);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -70,16 +74,14 @@ int liegen_groups_so2_log_batch(
             }
             liegen_groups_load(x, 2, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 1, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 1, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 1, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -22,22 +22,22 @@ static void block_value(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t0 * x_qx;
-    const lanes t5 = t2 * x_qw;
-    const lanes t6 = t2 * x_qx;
-    const lanes t7 = t0 * x_qw;
-    const lanes t8 = 2.0 * x_qx;
-    const lanes t9 = x_qx * t8;
-    const lanes t10 = p_x * (t4 + t5) + p_y * (1.0 - t3 - t9);
-    const lanes t11 = x_qy * t2;
-    const lanes t12 = x_qw * t8;
-    out[0] = p_z * (t6 + t7) + (p_x * (t1 - t3) + p_y * (t4 - t5));
-    out[1] = p_z * (t11 - t12) + t10;
-    out[2] = p_z * (t1 - t9) + (p_x * (t6 - t7) + p_y * (t11 + t12));
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = t0 * x_qx;
+    const lanes t2 = 2.0 * x_qy;
+    const lanes t3 = t2 * x_qw;
+    const lanes t4 = x_qx * t2;
+    const lanes t5 = t0 * x_qw;
+    const lanes t6 = 1.0 - x_qy * t2;
+    const lanes t7 = x_qz * t0;
+    const lanes t8 = t0 * x_qy;
+    const lanes t9 = 2.0 * x_qx;
+    const lanes t10 = x_qw * t9;
+    const lanes t11 = x_qx * t9;
+    const lanes t12 = p_z * (t8 - t10) + p_x * (t4 + t5);
+    out[0] = p_x * (t6 - t7) + (p_z * (t1 + t3) + p_y * (t4 - t5));
+    out[1] = p_y * (1.0 - t11 - t7) + t12;
+    out[2] = p_z * (t6 - t11) + (p_x * (t1 - t3) + p_y * (t8 + t10));
 }
 
 /* Value and Jacobians of a block. */
@@ -46,7 +46,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -55,48 +57,52 @@ static void block_jacobians(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t1 - t3;
-    const lanes t5 = t0 * x_qx;
-    const lanes t6 = t2 * x_qw;
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = t0 * x_qx;
+    const lanes t2 = 2.0 * x_qy;
+    const lanes t3 = t2 * x_qw;
+    const lanes t4 = t1 + t3;
+    const lanes t5 = x_qx * t2;
+    const lanes t6 = t0 * x_qw;
     const lanes t7 = t5 - t6;
-    const lanes t8 = t2 * x_qx;
-    const lanes t9 = t0 * x_qw;
-    const lanes t10 = t8 + t9;
-    const lanes t11 = t5 + t6;
+    const lanes t8 = 1.0 - x_qy * t2;
+    const lanes t9 = x_qz * t0;
+    const lanes t10 = t8 - t9;
+    const lanes t11 = t0 * x_qy;
     const lanes t12 = 2.0 * x_qx;
-    const lanes t13 = x_qx * t12;
-    const lanes t14 = 1.0 - t3 - t13;
-    const lanes t15 = x_qy * t2;
-    const lanes t16 = x_qw * t12;
-    const lanes t17 = t15 - t16;
-    const lanes t18 = t8 - t9;
-    const lanes t19 = t15 + t16;
-    const lanes t20 = t1 - t13;
-    out[0] = p_z * t10 + (p_x * t4 + p_y * t7);
-    out[1] = p_z * t17 + (p_x * t11 + p_y * t14);
+    const lanes t13 = x_qw * t12;
+    const lanes t14 = t11 - t13;
+    const lanes t15 = t5 + t6;
+    const lanes t16 = x_qx * t12;
+    const lanes t17 = 1.0 - t16 - t9;
+    const lanes t18 = t1 - t3;
+    const lanes t19 = t11 + t13;
+    const lanes t20 = t8 - t16;
+    out[0] = p_x * t10 + (p_z * t4 + p_y * t7);
+    out[1] = p_y * t17 + (p_z * t14 + p_x * t15);
     out[2] = p_z * t20 + (p_x * t18 + p_y * t19);
-    out_D_x[0] = p_y * t10 - t7 * p_z;
-    out_D_x[1] = t4 * p_z - p_x * t10;
-    out_D_x[2] = p_x * t7 - t4 * p_y;
-    out_D_x[3] = p_y * t17 - p_z * t14;
-    out_D_x[4] = p_z * t11 - p_x * t17;
-    out_D_x[5] = p_x * t14 - p_y * t11;
-    out_D_x[6] = p_y * t20 - p_z * t19;
-    out_D_x[7] = p_z * t18 - p_x * t20;
-    out_D_x[8] = p_x * t19 - p_y * t18;
-    out_D_p[0] = t4;
-    out_D_p[1] = t7;
-    out_D_p[2] = t10;
-    out_D_p[3] = t11;
-    out_D_p[4] = t14;
-    out_D_p[5] = t17;
-    out_D_p[6] = t18;
-    out_D_p[7] = t19;
-    out_D_p[8] = t20;
+    if (want_out_D_x) {
+        out_D_x[0] = t4 * p_y - p_z * t7;
+        out_D_x[1] = p_z * t10 - t4 * p_x;
+        out_D_x[2] = t7 * p_x - p_y * t10;
+        out_D_x[3] = p_y * t14 - p_z * t17;
+        out_D_x[4] = p_z * t15 - p_x * t14;
+        out_D_x[5] = p_x * t17 - p_y * t15;
+        out_D_x[6] = p_y * t20 - p_z * t19;
+        out_D_x[7] = p_z * t18 - p_x * t20;
+        out_D_x[8] = p_x * t19 - p_y * t18;
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = t10;
+        out_D_p[1] = t7;
+        out_D_p[2] = t4;
+        out_D_p[3] = t15;
+        out_D_p[4] = t17;
+        out_D_p[5] = t14;
+        out_D_p[6] = t18;
+        out_D_p[7] = t19;
+        out_D_p[8] = t20;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -116,7 +122,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 9, n, k);
 }
 
-int liegen_groups_so3_act_batch(
+LANES_WHOLE int liegen_groups_so3_act_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -125,7 +131,9 @@ int liegen_groups_so3_act_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 21 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -148,17 +156,16 @@ int liegen_groups_so3_act_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

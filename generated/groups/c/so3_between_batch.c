@@ -35,7 +35,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -49,40 +51,44 @@ static void block_jacobians(
     const lanes t1 = y_qx * x_qy + (x_qw * y_qz - x_qx * y_qy) - y_qw * x_qz;
     const lanes t2 = y_qz * x_qz + (x_qy * y_qy + (x_qw * y_qw + y_qx * x_qx));
     const lanes t3 = x_qw * y_qy + x_qx * y_qz - y_qw * x_qy - y_qx * x_qz;
-    const lanes t4 = t0 * 2.0;
-    const lanes t5 = t1 * (-2.0);
-    const lanes t6 = t2 * t4;
-    const lanes t7 = t3 * t5;
-    const lanes t8 = t3 * (-2.0);
-    const lanes t9 = t0 * t5;
-    const lanes t10 = t2 * t8;
-    const lanes t11 = t2 * t5;
-    const lanes t12 = t0 * t8;
-    const lanes t13 = t1 * t5;
-    const lanes t14 = t0 * t4;
-    const lanes t15 = -1.0 - t3 * t8;
     out[0] = t0;
     out[1] = t3;
     out[2] = t1;
     out[3] = t2;
-    out_D_x[0] = t15 - t13;
-    out_D_x[1] = t12 + t11;
-    out_D_x[2] = t9 - t10;
-    out_D_x[3] = t12 - t11;
-    out_D_x[4] = t14 + (-1.0 - t13);
-    out_D_x[5] = t7 - t6;
-    out_D_x[6] = t10 + t9;
-    out_D_x[7] = t7 + t6;
-    out_D_x[8] = t15 + t14;
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(1.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(0.0);
-    out_D_y[8] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t4 = t0 * 2.0;
+        const lanes t5 = t1 * (-2.0);
+        const lanes t6 = t2 * t4;
+        const lanes t7 = t3 * t5;
+        const lanes t8 = t3 * (-2.0);
+        const lanes t9 = t0 * t5;
+        const lanes t10 = t2 * t8;
+        const lanes t11 = t2 * t5;
+        const lanes t12 = t0 * t8;
+        const lanes t13 = t1 * t5;
+        const lanes t14 = t0 * t4;
+        const lanes t15 = -1.0 - t3 * t8;
+        out_D_x[0] = t15 - t13;
+        out_D_x[1] = t12 + t11;
+        out_D_x[2] = t9 - t10;
+        out_D_x[3] = t12 - t11;
+        out_D_x[4] = t14 + (-1.0 - t13);
+        out_D_x[5] = t7 - t6;
+        out_D_x[6] = t10 + t9;
+        out_D_x[7] = t7 + t6;
+        out_D_x[8] = t15 + t14;
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(1.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(0.0);
+        out_D_y[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -102,7 +108,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 9, n, k);
 }
 
-int liegen_groups_so3_between_batch(
+LANES_WHOLE int liegen_groups_so3_between_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -111,7 +117,9 @@ int liegen_groups_so3_between_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 22 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -134,17 +142,16 @@ int liegen_groups_so3_between_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(y, 4, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -35,7 +35,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -45,40 +47,44 @@ static void block_jacobians(
     const lanes y_qy = y[1];
     const lanes y_qz = y[2];
     const lanes y_qw = y[3];
-    const lanes t0 = y_qx * 2.0;
-    const lanes t1 = y_qz * 2.0;
-    const lanes t2 = y_qw * t0;
-    const lanes t3 = y_qy * t1;
-    const lanes t4 = y_qy * 2.0;
-    const lanes t5 = y_qx * t1;
-    const lanes t6 = y_qw * t4;
-    const lanes t7 = y_qw * t1;
-    const lanes t8 = y_qx * t4;
-    const lanes t9 = y_qz * t1;
-    const lanes t10 = y_qx * t0;
-    const lanes t11 = 1.0 - y_qy * t4;
     out[0] = x_qy * y_qz + (x_qw * y_qx + x_qx * y_qw) - x_qz * y_qy;
     out[1] = y_qx * x_qz + (y_qw * x_qy + (x_qw * y_qy - x_qx * y_qz));
     out[2] = y_qw * x_qz + (x_qw * y_qz + x_qx * y_qy - y_qx * x_qy);
     out[3] = x_qw * y_qw - y_qx * x_qx - x_qy * y_qy - y_qz * x_qz;
-    out_D_x[0] = t11 - t9;
-    out_D_x[1] = t8 + t7;
-    out_D_x[2] = t5 - t6;
-    out_D_x[3] = t8 - t7;
-    out_D_x[4] = 1.0 - t9 - t10;
-    out_D_x[5] = t3 + t2;
-    out_D_x[6] = t6 + t5;
-    out_D_x[7] = t3 - t2;
-    out_D_x[8] = t11 - t10;
-    out_D_y[0] = lanes_of(1.0);
-    out_D_y[1] = lanes_of(0.0);
-    out_D_y[2] = lanes_of(0.0);
-    out_D_y[3] = lanes_of(0.0);
-    out_D_y[4] = lanes_of(1.0);
-    out_D_y[5] = lanes_of(0.0);
-    out_D_y[6] = lanes_of(0.0);
-    out_D_y[7] = lanes_of(0.0);
-    out_D_y[8] = lanes_of(1.0);
+    if (want_out_D_x) {
+        const lanes t0 = y_qx * 2.0;
+        const lanes t1 = y_qz * 2.0;
+        const lanes t2 = y_qw * t0;
+        const lanes t3 = y_qy * t1;
+        const lanes t4 = y_qy * 2.0;
+        const lanes t5 = y_qx * t1;
+        const lanes t6 = y_qw * t4;
+        const lanes t7 = y_qw * t1;
+        const lanes t8 = y_qx * t4;
+        const lanes t9 = y_qz * t1;
+        const lanes t10 = y_qx * t0;
+        const lanes t11 = 1.0 - y_qy * t4;
+        out_D_x[0] = t11 - t9;
+        out_D_x[1] = t8 + t7;
+        out_D_x[2] = t5 - t6;
+        out_D_x[3] = t8 - t7;
+        out_D_x[4] = 1.0 - t9 - t10;
+        out_D_x[5] = t3 + t2;
+        out_D_x[6] = t6 + t5;
+        out_D_x[7] = t3 - t2;
+        out_D_x[8] = t11 - t10;
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = lanes_of(1.0);
+        out_D_y[1] = lanes_of(0.0);
+        out_D_y[2] = lanes_of(0.0);
+        out_D_y[3] = lanes_of(0.0);
+        out_D_y[4] = lanes_of(1.0);
+        out_D_y[5] = lanes_of(0.0);
+        out_D_y[6] = lanes_of(0.0);
+        out_D_y[7] = lanes_of(0.0);
+        out_D_y[8] = lanes_of(1.0);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -98,7 +104,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 9, n, k);
 }
 
-int liegen_groups_so3_compose_batch(
+LANES_WHOLE int liegen_groups_so3_compose_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -107,7 +113,9 @@ int liegen_groups_so3_compose_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 22 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -130,17 +138,16 @@ int liegen_groups_so3_compose_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(y, 4, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -52,7 +52,7 @@ int liegen_groups_so3_exp(
     double *out,
     double *out_D_d);
 
-/* n factors; see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
+/* n factors (row-major); see liegen_groups_batch.h. status: NULL, or n bit masks. The result is the union of them. */
 int liegen_groups_so3_exp_batch(
     ptrdiff_t n,
     liegen_groups_in d,

@@ -28,37 +28,40 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
     const lanes x_qz = x[2];
     const lanes x_qw = x[3];
-    const lanes t0 = x_qx * 2.0;
-    const lanes t1 = x_qz * (-2.0);
-    const lanes t2 = x_qw * t0;
-    const lanes t3 = x_qy * t1;
-    const lanes t4 = x_qy * (-2.0);
-    const lanes t5 = x_qw * t4;
-    const lanes t6 = x_qx * t1;
-    const lanes t7 = x_qw * t1;
-    const lanes t8 = x_qx * t4;
-    const lanes t9 = x_qz * t1;
-    const lanes t10 = x_qx * t0;
-    const lanes t11 = -1.0 - x_qy * t4;
     out[0] = -x_qx;
     out[1] = -x_qy;
     out[2] = -x_qz;
     out[3] = x_qw;
-    out_D_x[0] = t11 - t9;
-    out_D_x[1] = t8 - t7;
-    out_D_x[2] = t6 + t5;
-    out_D_x[3] = t8 + t7;
-    out_D_x[4] = t10 + (-1.0 - t9);
-    out_D_x[5] = t3 + t2;
-    out_D_x[6] = t6 - t5;
-    out_D_x[7] = t3 - t2;
-    out_D_x[8] = t11 + t10;
+    if (want_out_D_x) {
+        const lanes t0 = x_qx * 2.0;
+        const lanes t1 = x_qz * (-2.0);
+        const lanes t2 = x_qw * t0;
+        const lanes t3 = x_qy * t1;
+        const lanes t4 = x_qy * (-2.0);
+        const lanes t5 = x_qw * t4;
+        const lanes t6 = x_qx * t1;
+        const lanes t7 = x_qw * t1;
+        const lanes t8 = x_qx * t4;
+        const lanes t9 = x_qz * t1;
+        const lanes t10 = x_qx * t0;
+        const lanes t11 = -1.0 - x_qy * t4;
+        out_D_x[0] = t11 - t9;
+        out_D_x[1] = t8 - t7;
+        out_D_x[2] = t6 + t5;
+        out_D_x[3] = t8 + t7;
+        out_D_x[4] = t10 + (-1.0 - t9);
+        out_D_x[5] = t3 + t2;
+        out_D_x[6] = t6 - t5;
+        out_D_x[7] = t3 - t2;
+        out_D_x[8] = t11 + t10;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -74,14 +77,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 9, n, k);
 }
 
-int liegen_groups_so3_inverse_batch(
+LANES_WHOLE int liegen_groups_so3_inverse_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 13 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -100,16 +104,14 @@ int liegen_groups_so3_inverse_batch(
             }
             liegen_groups_load(x, 4, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

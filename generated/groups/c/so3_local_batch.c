@@ -45,7 +45,9 @@ static void block_jacobians(
     const lanes *y,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_y)
+    lanes *out_D_y,
+    int want_out_D_x,
+    int want_out_D_y)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -95,24 +97,28 @@ static void block_jacobians(
     out[0] = t11;
     out[1] = t12;
     out[2] = t13;
-    out_D_x[0] = -t21;
-    out_D_x[1] = -t24;
-    out_D_x[2] = -t27;
-    out_D_x[3] = -t28;
-    out_D_x[4] = -t30;
-    out_D_x[5] = -t33;
-    out_D_x[6] = -t34;
-    out_D_x[7] = -t35;
-    out_D_x[8] = -t36;
-    out_D_y[0] = t21;
-    out_D_y[1] = t28;
-    out_D_y[2] = t34;
-    out_D_y[3] = t24;
-    out_D_y[4] = t30;
-    out_D_y[5] = t35;
-    out_D_y[6] = t27;
-    out_D_y[7] = t33;
-    out_D_y[8] = t36;
+    if (want_out_D_x) {
+        out_D_x[0] = -t21;
+        out_D_x[1] = -t24;
+        out_D_x[2] = -t27;
+        out_D_x[3] = -t28;
+        out_D_x[4] = -t30;
+        out_D_x[5] = -t33;
+        out_D_x[6] = -t34;
+        out_D_x[7] = -t35;
+        out_D_x[8] = -t36;
+    }
+    if (want_out_D_y) {
+        out_D_y[0] = t21;
+        out_D_y[1] = t28;
+        out_D_y[2] = t34;
+        out_D_y[3] = t24;
+        out_D_y[4] = t30;
+        out_D_y[5] = t35;
+        out_D_y[6] = t27;
+        out_D_y[7] = t33;
+        out_D_y[8] = t36;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -132,7 +138,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_y, 9, n, k);
 }
 
-int liegen_groups_so3_local_batch(
+LANES_WHOLE int liegen_groups_so3_local_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in y,
@@ -141,7 +147,9 @@ int liegen_groups_so3_local_batch(
     liegen_groups_out out_D_y,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_y.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_y = out_D_y.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_y;
     const int stream = lanes_streams(n, jacobians ? 21 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -164,17 +172,16 @@ int liegen_groups_so3_local_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(y, 4, k, count, y_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes);
+                block_jacobians(x_lanes, y_lanes, out_lanes, out_D_x_lanes, out_D_y_lanes, want_out_D_x,
+                    want_out_D_y);
             }
             if (!jacobians) {
                 block_value(x_lanes, y_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_y) liegen_groups_store(out_D_y, 9, k, count, out_D_y_lanes, room, stream ? &out_D_y_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -37,7 +37,8 @@ static void block_value(
 static void block_jacobians(
     const lanes *x,
     lanes *out,
-    lanes *out_D_x)
+    lanes *out_D_x,
+    int want_out_D_x)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -56,32 +57,34 @@ static void block_jacobians(
     const lanes t10 = x_qx * t9;
     const lanes t11 = x_qy * t9;
     const lanes t12 = x_qz * t9;
-    const lanes t13 = t10 * t10 + t11 * t11 + t12 * t12;
-    const lanes t14 = t13 * (2.25732705039638e-06 * t13 - 0.07465244042649771);
-    const lanes t15 = t13 * (t14 + 38.45987747204322) - 3799.5172048139725;
-    const lanes t16 = t13 * (t13 * (t13 - 635.5207748643182) + 92825.69243378133);
-    const lanes t17 = 0.08333333333333333 + t15 * (t13 / (t16 - 2735652.38746603));
-    const lanes t18 = 1.0 - t13 * t17;
-    const lanes t19 = t10 * t17;
-    const lanes t20 = t11 * t19;
-    const lanes t21 = t12 * 0.5;
-    const lanes t22 = t12 * t19;
-    const lanes t23 = t11 * 0.5;
-    const lanes t24 = t11 * t17;
-    const lanes t25 = t12 * t24;
-    const lanes t26 = t10 * 0.5;
     out[0] = t10;
     out[1] = t11;
     out[2] = t12;
-    out_D_x[0] = t18 + t10 * t19;
-    out_D_x[1] = t20 - t21;
-    out_D_x[2] = t22 + t23;
-    out_D_x[3] = t20 + t21;
-    out_D_x[4] = t18 + t11 * t24;
-    out_D_x[5] = t25 - t26;
-    out_D_x[6] = t22 - t23;
-    out_D_x[7] = t25 + t26;
-    out_D_x[8] = t18 + t12 * (t12 * t17);
+    if (want_out_D_x) {
+        const lanes t13 = t10 * t10 + t11 * t11 + t12 * t12;
+        const lanes t14 = t13 * (2.25732705039638e-06 * t13 - 0.07465244042649771);
+        const lanes t15 = t13 * (t14 + 38.45987747204322) - 3799.5172048139725;
+        const lanes t16 = t13 * (t13 * (t13 - 635.5207748643182) + 92825.69243378133);
+        const lanes t17 = 0.08333333333333333 + t15 * (t13 / (t16 - 2735652.38746603));
+        const lanes t18 = 1.0 - t13 * t17;
+        const lanes t19 = t10 * t17;
+        const lanes t20 = t11 * t19;
+        const lanes t21 = t12 * 0.5;
+        const lanes t22 = t12 * t19;
+        const lanes t23 = t11 * 0.5;
+        const lanes t24 = t11 * t17;
+        const lanes t25 = t12 * t24;
+        const lanes t26 = t10 * 0.5;
+        out_D_x[0] = t18 + t10 * t19;
+        out_D_x[1] = t20 - t21;
+        out_D_x[2] = t22 + t23;
+        out_D_x[3] = t20 + t21;
+        out_D_x[4] = t18 + t11 * t24;
+        out_D_x[5] = t25 - t26;
+        out_D_x[6] = t22 - t23;
+        out_D_x[7] = t25 + t26;
+        out_D_x[8] = t18 + t12 * (t12 * t17);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -97,14 +100,15 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_x, 9, n, k);
 }
 
-int liegen_groups_so3_log_batch(
+LANES_WHOLE int liegen_groups_so3_log_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_out out,
     liegen_groups_out out_D_x,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int jacobians = want_out_D_x;
     const int stream = lanes_streams(n, jacobians ? 12 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -123,16 +127,14 @@ int liegen_groups_so3_log_batch(
             }
             liegen_groups_load(x, 4, k, count, x_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, out_lanes, out_D_x_lanes);
+                block_jacobians(x_lanes, out_lanes, out_D_x_lanes, want_out_D_x);
             }
             if (!jacobians) {
                 block_value(x_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -42,7 +42,9 @@ static void block_jacobians(
     const lanes *d,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_d)
+    lanes *out_D_d,
+    int want_out_D_x,
+    int want_out_D_d)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -58,59 +60,63 @@ static void block_jacobians(
     const lanes t4 = lanes_sqrt(t3);
     lanes t5, t6; lanes_sincos(t4, &t5, &t6);
     const lanes t7 = t5 / t4;
-    const lanes t8 = t0 * (t0 * (-2.7073636682318957e-15) + 7.641712667683627e-13);
-    const lanes t9 = t0 * (t8 - 1.605889346154661e-10) + 2.5052106052920182e-08;
-    const lanes t10 = t0 * (t0 * t9 - 2.755731920385087e-06) + 0.0001984126984118024;
-    const lanes t11 = t0 * (t0 * t10 - 0.008333333333333161) + 0.16666666666666666;
-    const lanes t12 = lanes_select(t0 < 3.0, t11, (1.0 - t7 * t6) * (0.25 / t3));
     const lanes t13 = 0.5 * t7;
-    const lanes t14 = t7 * t13;
-    const lanes t15 = d_y * t12;
-    const lanes t16 = d_x * t14;
-    const lanes t17 = d_z * t15;
-    const lanes t18 = d_x * t12;
-    const lanes t19 = d_y * t14;
-    const lanes t20 = d_z * t18;
-    const lanes t21 = d_z * t14;
-    const lanes t22 = d_y * t18;
-    const lanes t23 = 1.0 - t0 * t12;
     const lanes t24 = d_z * t13;
     const lanes t25 = d_x * t13;
     const lanes t26 = d_y * t13;
-    const lanes t27 = t25 * 2.0;
-    const lanes t28 = t24 * 2.0;
-    const lanes t29 = t6 * t27;
-    const lanes t30 = t26 * t28;
-    const lanes t31 = t26 * 2.0;
-    const lanes t32 = t25 * t28;
-    const lanes t33 = t6 * t31;
-    const lanes t34 = t6 * t28;
-    const lanes t35 = t25 * t31;
-    const lanes t36 = t24 * t28;
-    const lanes t37 = t25 * t27;
-    const lanes t38 = 1.0 - t26 * t31;
     out[0] = x_qy * t24 + (x_qw * t25 + x_qx * t6) - x_qz * t26;
     out[1] = t25 * x_qz + (t6 * x_qy + (x_qw * t26 - x_qx * t24));
     out[2] = t6 * x_qz + (x_qw * t24 + x_qx * t26 - t25 * x_qy);
     out[3] = x_qw * t6 - t25 * x_qx - x_qy * t26 - t24 * x_qz;
-    out_D_x[0] = t38 - t36;
-    out_D_x[1] = t35 + t34;
-    out_D_x[2] = t32 - t33;
-    out_D_x[3] = t35 - t34;
-    out_D_x[4] = 1.0 - t36 - t37;
-    out_D_x[5] = t30 + t29;
-    out_D_x[6] = t33 + t32;
-    out_D_x[7] = t30 - t29;
-    out_D_x[8] = t38 - t37;
-    out_D_d[0] = t23 + d_x * t18;
-    out_D_d[1] = t22 + t21;
-    out_D_d[2] = t20 - t19;
-    out_D_d[3] = t22 - t21;
-    out_D_d[4] = t23 + d_y * t15;
-    out_D_d[5] = t17 + t16;
-    out_D_d[6] = t20 + t19;
-    out_D_d[7] = t17 - t16;
-    out_D_d[8] = t23 + d_z * (d_z * t12);
+    if (want_out_D_x) {
+        const lanes t27 = t25 * 2.0;
+        const lanes t28 = t24 * 2.0;
+        const lanes t29 = t6 * t27;
+        const lanes t30 = t26 * t28;
+        const lanes t31 = t26 * 2.0;
+        const lanes t32 = t25 * t28;
+        const lanes t33 = t6 * t31;
+        const lanes t34 = t6 * t28;
+        const lanes t35 = t25 * t31;
+        const lanes t36 = t24 * t28;
+        const lanes t37 = t25 * t27;
+        const lanes t38 = 1.0 - t26 * t31;
+        out_D_x[0] = t38 - t36;
+        out_D_x[1] = t35 + t34;
+        out_D_x[2] = t32 - t33;
+        out_D_x[3] = t35 - t34;
+        out_D_x[4] = 1.0 - t36 - t37;
+        out_D_x[5] = t30 + t29;
+        out_D_x[6] = t33 + t32;
+        out_D_x[7] = t30 - t29;
+        out_D_x[8] = t38 - t37;
+    }
+    if (want_out_D_d) {
+        const lanes t8 = t0 * (t0 * (-2.7073636682318957e-15) + 7.641712667683627e-13);
+        const lanes t9 = t0 * (t8 - 1.605889346154661e-10) + 2.5052106052920182e-08;
+        const lanes t10 = t0 * (t0 * t9 - 2.755731920385087e-06) + 0.0001984126984118024;
+        const lanes t11 = t0 * (t0 * t10 - 0.008333333333333161) + 0.16666666666666666;
+        const lanes t12 = lanes_select(t0 < 3.0, t11, (1.0 - t7 * t6) * (0.25 / t3));
+        const lanes t14 = t7 * t13;
+        const lanes t15 = d_y * t12;
+        const lanes t16 = d_x * t14;
+        const lanes t17 = d_z * t15;
+        const lanes t18 = d_x * t12;
+        const lanes t19 = d_y * t14;
+        const lanes t20 = d_z * t18;
+        const lanes t21 = d_z * t14;
+        const lanes t22 = d_y * t18;
+        const lanes t23 = 1.0 - t0 * t12;
+        out_D_d[0] = t23 + d_x * t18;
+        out_D_d[1] = t22 + t21;
+        out_D_d[2] = t20 - t19;
+        out_D_d[3] = t22 - t21;
+        out_D_d[4] = t23 + d_y * t15;
+        out_D_d[5] = t17 + t16;
+        out_D_d[6] = t20 + t19;
+        out_D_d[7] = t17 - t16;
+        out_D_d[8] = t23 + d_z * (d_z * t12);
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -130,7 +136,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_d, 9, n, k);
 }
 
-int liegen_groups_so3_retract_batch(
+LANES_WHOLE int liegen_groups_so3_retract_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in d,
@@ -139,7 +145,9 @@ int liegen_groups_so3_retract_batch(
     liegen_groups_out out_D_d,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_d.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_d = out_D_d.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_d;
     const int stream = lanes_streams(n, jacobians ? 22 : 4);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -162,17 +170,16 @@ int liegen_groups_so3_retract_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(d, 3, k, count, d_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes);
+                block_jacobians(x_lanes, d_lanes, out_lanes, out_D_x_lanes, out_D_d_lanes, want_out_D_x,
+                    want_out_D_d);
             }
             if (!jacobians) {
                 block_value(x_lanes, d_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 4, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_d, 9, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_d) liegen_groups_store(out_D_d, 9, k, count, out_D_d_lanes, room, stream ? &out_D_d_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

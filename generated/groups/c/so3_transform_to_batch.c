@@ -22,22 +22,22 @@ static void block_value(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t0 * x_qx;
-    const lanes t5 = t2 * x_qw;
-    const lanes t6 = t2 * x_qx;
-    const lanes t7 = t0 * x_qw;
-    const lanes t8 = 2.0 * x_qx;
-    const lanes t9 = x_qx * t8;
-    const lanes t10 = p_x * (t4 - t5) + p_y * (1.0 - t3 - t9);
-    const lanes t11 = x_qy * t2;
-    const lanes t12 = x_qw * t8;
-    out[0] = p_z * (t6 - t7) + (p_x * (t1 - t3) + p_y * (t4 + t5));
-    out[1] = p_z * (t11 + t12) + t10;
-    out[2] = p_z * (t1 - t9) + (p_x * (t6 + t7) + p_y * (t11 - t12));
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = t0 * x_qx;
+    const lanes t2 = 2.0 * x_qy;
+    const lanes t3 = t2 * x_qw;
+    const lanes t4 = x_qx * t2;
+    const lanes t5 = t0 * x_qw;
+    const lanes t6 = 1.0 - x_qy * t2;
+    const lanes t7 = x_qz * t0;
+    const lanes t8 = t0 * x_qy;
+    const lanes t9 = 2.0 * x_qx;
+    const lanes t10 = x_qw * t9;
+    const lanes t11 = x_qx * t9;
+    const lanes t12 = p_z * (t8 + t10) + p_x * (t4 - t5);
+    out[0] = p_x * (t6 - t7) + (p_z * (t1 - t3) + p_y * (t4 + t5));
+    out[1] = p_y * (1.0 - t11 - t7) + t12;
+    out[2] = p_z * (t6 - t11) + (p_x * (t1 + t3) + p_y * (t8 - t10));
 }
 
 /* Value and Jacobians of a block. */
@@ -46,7 +46,9 @@ static void block_jacobians(
     const lanes *p,
     lanes *out,
     lanes *out_D_x,
-    lanes *out_D_p)
+    lanes *out_D_p,
+    int want_out_D_x,
+    int want_out_D_p)
 {
     const lanes x_qx = x[0];
     const lanes x_qy = x[1];
@@ -55,51 +57,55 @@ static void block_jacobians(
     const lanes p_x = p[0];
     const lanes p_y = p[1];
     const lanes p_z = p[2];
-    const lanes t0 = x_qy * 2.0;
-    const lanes t1 = 1.0 - x_qy * t0;
-    const lanes t2 = 2.0 * x_qz;
-    const lanes t3 = x_qz * t2;
-    const lanes t4 = t1 - t3;
-    const lanes t5 = t0 * x_qx;
-    const lanes t6 = t2 * x_qw;
-    const lanes t7 = t5 + t6;
-    const lanes t8 = t2 * x_qx;
-    const lanes t9 = t0 * x_qw;
-    const lanes t10 = t8 - t9;
-    const lanes t11 = p_z * t10 + (p_x * t4 + p_y * t7);
-    const lanes t12 = t5 - t6;
-    const lanes t13 = 2.0 * x_qx;
-    const lanes t14 = x_qx * t13;
-    const lanes t15 = 1.0 - t3 - t14;
-    const lanes t16 = x_qy * t2;
-    const lanes t17 = x_qw * t13;
-    const lanes t18 = t16 + t17;
-    const lanes t19 = p_z * t18 + (p_x * t12 + p_y * t15);
-    const lanes t20 = t8 + t9;
-    const lanes t21 = t16 - t17;
-    const lanes t22 = t1 - t14;
-    const lanes t23 = p_z * t22 + (p_x * t20 + p_y * t21);
-    out[0] = t11;
-    out[1] = t19;
+    const lanes t0 = 2.0 * x_qz;
+    const lanes t1 = 2.0 * x_qy;
+    const lanes t2 = t0 * x_qw;
+    const lanes t3 = x_qx * t1;
+    const lanes t4 = t3 - t2;
+    const lanes t5 = t3 + t2;
+    const lanes t6 = 2.0 * x_qx;
+    const lanes t7 = x_qw * t6;
+    const lanes t8 = t0 * x_qy;
+    const lanes t9 = t8 + t7;
+    const lanes t10 = t8 - t7;
+    const lanes t11 = t1 * x_qw;
+    const lanes t12 = t0 * x_qx;
+    const lanes t13 = t12 - t11;
+    const lanes t14 = t12 + t11;
+    const lanes t15 = x_qx * t6;
+    const lanes t16 = x_qz * t0;
+    const lanes t17 = 1.0 - t15 - t16;
+    const lanes t18 = 1.0 - x_qy * t1;
+    const lanes t19 = t18 - t16;
+    const lanes t20 = t18 - t15;
+    const lanes t21 = p_y * t17 + (p_z * t9 + p_x * t4);
+    const lanes t22 = p_x * t19 + (p_z * t13 + p_y * t5);
+    const lanes t23 = p_z * t20 + (p_x * t14 + p_y * t10);
+    out[0] = t22;
+    out[1] = t21;
     out[2] = t23;
-    out_D_x[0] = lanes_of(0.0);
-    out_D_x[1] = -t23;
-    out_D_x[2] = t19;
-    out_D_x[3] = t23;
-    out_D_x[4] = lanes_of(0.0);
-    out_D_x[5] = -t11;
-    out_D_x[6] = -t19;
-    out_D_x[7] = t11;
-    out_D_x[8] = lanes_of(0.0);
-    out_D_p[0] = t4;
-    out_D_p[1] = t7;
-    out_D_p[2] = t10;
-    out_D_p[3] = t12;
-    out_D_p[4] = t15;
-    out_D_p[5] = t18;
-    out_D_p[6] = t20;
-    out_D_p[7] = t21;
-    out_D_p[8] = t22;
+    if (want_out_D_x) {
+        out_D_x[0] = lanes_of(0.0);
+        out_D_x[1] = -t23;
+        out_D_x[2] = t21;
+        out_D_x[3] = t23;
+        out_D_x[4] = lanes_of(0.0);
+        out_D_x[5] = -t22;
+        out_D_x[6] = -t21;
+        out_D_x[7] = t22;
+        out_D_x[8] = lanes_of(0.0);
+    }
+    if (want_out_D_p) {
+        out_D_p[0] = t19;
+        out_D_p[1] = t5;
+        out_D_p[2] = t13;
+        out_D_p[3] = t4;
+        out_D_p[4] = t17;
+        out_D_p[5] = t9;
+        out_D_p[6] = t14;
+        out_D_p[7] = t10;
+        out_D_p[8] = t20;
+    }
 }
 
 /* Asks for what the next block will read and write. */
@@ -119,7 +125,7 @@ static LANES_APART void block_ahead(
     liegen_groups_ahead_to(out_D_p, 9, n, k);
 }
 
-int liegen_groups_so3_transform_to_batch(
+LANES_WHOLE int liegen_groups_so3_transform_to_batch(
     ptrdiff_t n,
     liegen_groups_in x,
     liegen_groups_in p,
@@ -128,7 +134,9 @@ int liegen_groups_so3_transform_to_batch(
     liegen_groups_out out_D_p,
     uint8_t *status)
 {
-    const int jacobians = out_D_x.data != NULL || out_D_p.data != NULL;
+    const int want_out_D_x = out_D_x.data != NULL;
+    const int want_out_D_p = out_D_p.data != NULL;
+    const int jacobians = want_out_D_x || want_out_D_p;
     const int stream = lanes_streams(n, jacobians ? 21 : 3);
     int violated = 0;
     LANES_PARALLEL(violated)
@@ -151,17 +159,16 @@ int liegen_groups_so3_transform_to_batch(
             liegen_groups_load(x, 4, k, count, x_lanes);
             liegen_groups_load(p, 3, k, count, p_lanes);
             if (jacobians) {
-                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes);
+                block_jacobians(x_lanes, p_lanes, out_lanes, out_D_x_lanes, out_D_p_lanes, want_out_D_x,
+                    want_out_D_p);
             }
             if (!jacobians) {
                 block_value(x_lanes, p_lanes, out_lanes);
             }
             lanes_status(NULL, 0, k, count, status);
             liegen_groups_store(out, 3, k, count, out_lanes, room, stream ? &out_pen : NULL);
-            if (jacobians) {
-                liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
-                liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
-            }
+            if (want_out_D_x) liegen_groups_store(out_D_x, 9, k, count, out_D_x_lanes, room, stream ? &out_D_x_pen : NULL);
+            if (want_out_D_p) liegen_groups_store(out_D_p, 9, k, count, out_D_p_lanes, room, stream ? &out_D_p_pen : NULL);
         }
         lanes_lift(&out_pen);
         lanes_lift(&out_D_x_pen);

@@ -78,16 +78,16 @@ def se2_exp_jacobians(d: npt.ArrayLike) -> Se2ExpJacobians:
 
 def _value(d: Array, out: Array) -> None:
     d_x, d_y, d_z = d
-    t0 = 0.25 * (d_z * d_z)
+    t0 = d_z * (d_z * 0.25)
     t1 = np.where(t0 < 8.673617379884035e-19, 8.673617379884035e-19, t0)
     t2 = np.sqrt(t1)
     t3 = np.sin(t2) / t2
     t4 = t3 * np.cos(t2)
-    t5 = 0.5 * (d_z * (t3 * t3))
+    t5 = t3 * (t3 * (d_z * 0.5))
     out[0] = np.cos(d_z)
     out[1] = np.sin(d_z)
     out[2] = d_x * t4 - d_y * t5
-    out[3] = d_x * t5 + d_y * t4
+    out[3] = d_x * t5 + t4 * d_y
 
 
 def _jacobians(d: Array, out: Array, out_D_d: Array) -> None:

@@ -104,7 +104,7 @@ def _value(d: Array, out: Array) -> None:
     out[2, 0] = t38
     out[2, 1] = t34
     out[2, 2] = t45
-    out[3, 0] = d_v0 * t27 + (2.0 * (t26 * d_v3) - t20)
+    out[3, 0] = d_v0 * t27 + (t26 * (2.0 * d_v3) - t20)
     out[3, 1] = t30 - t31
     out[3, 2] = t28 + t29
     out[3, 3] = t47
