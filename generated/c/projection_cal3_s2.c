@@ -41,7 +41,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 52 (residual only), 98 (with Jacobians)
+ * Operations: 52 (residual only), 97 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -138,22 +138,22 @@ int liegen_factors_projection_cal3_s2(
     const double K_v0 = K[4];
     const double z_x = z[0];
     const double z_y = z[1];
-    const double t0 = x_x - p_x;
-    const double t1 = x_qz * 2.0;
-    const double t2 = x_qx * t1;
-    const double t3 = 2.0 * x_qy;
-    const double t4 = x_qw * t3;
-    const double t5 = t2 + t4;
-    const double t6 = x_y - p_y;
-    const double t7 = t1 * x_qy;
-    const double t8 = x_qx * 2.0;
-    const double t9 = x_qw * t8;
-    const double t10 = t7 - t9;
-    const double t11 = x_z - p_z;
-    const double t12 = 1.0 - x_qy * t3;
-    const double t13 = x_qx * t8;
-    const double t14 = t12 - t13;
-    const double t15 = t11 * t14 + (t0 * t5 + t6 * t10);
+    const double t0 = 2.0 * x_qz;
+    const double t1 = x_qy * t0;
+    const double t2 = 2.0 * x_qx;
+    const double t3 = t2 * x_qw;
+    const double t4 = t1 - t3;
+    const double t5 = x_y - p_y;
+    const double t6 = t0 * x_qx;
+    const double t7 = x_qy * 2.0;
+    const double t8 = x_qw * t7;
+    const double t9 = t6 + t8;
+    const double t10 = x_x - p_x;
+    const double t11 = x_qx * t2;
+    const double t12 = 1.0 - x_qy * t7;
+    const double t13 = t11 - t12;
+    const double t14 = x_z - p_z;
+    const double t15 = t5 * t4 + t10 * t9 - t14 * t13;
     const int status = ((t15 < 0.0) ? 0 : 1);
     if (status) {
         liegen_factors_projection_cal3_s2_fill(res, 2);
@@ -161,49 +161,50 @@ int liegen_factors_projection_cal3_s2(
         liegen_factors_projection_cal3_s2_fill(res_D_p, 6);
         return status;
     }
-    const double t16 = x_qz * t1;
-    const double t17 = t12 - t16;
-    const double t18 = x_qx * t3;
-    const double t19 = t1 * x_qw;
-    const double t20 = t18 + t19;
-    const double t21 = t2 - t4;
-    const double t22 = t11 * t21 + (t0 * t17 + t6 * t20);
-    const double t23 = 1.0 / t15;
-    const double t24 = t22 * t23;
-    const double t25 = t18 - t19;
-    const double t26 = 1.0 - t16 - t13;
-    const double t27 = t7 + t9;
-    const double t28 = t11 * t27 + (t0 * t25 + t6 * t26);
-    const double t29 = t23 * t28;
-    const double t30 = K_fx * t23;
-    const double t31 = t23 * K_s;
-    const double t32 = t24 * t30 + t29 * t31;
-    const double t33 = -t22;
-    const double t34 = t23 * K_fy;
-    const double t35 = t29 * t34;
-    res[0] = K_s * t29 + (K_fx * t24 + (K_u0 - z_x));
-    res[1] = t29 * K_fy + (K_v0 - z_y);
+    const double t16 = 1.0 / t15;
+    const double t17 = x_qx * t7;
+    const double t18 = t0 * x_qw;
+    const double t19 = t17 + t18;
+    const double t20 = t8 - t6;
+    const double t21 = x_qz * t0;
+    const double t22 = t21 - t12;
+    const double t23 = t5 * t19 - t14 * t20 - t10 * t22;
+    const double t24 = t16 * t23;
+    const double t25 = t11 + (t21 - 1.0);
+    const double t26 = t1 + t3;
+    const double t27 = t18 - t17;
+    const double t28 = t10 * t27 + (t5 * t25 - t14 * t26);
+    const double t29 = t16 * t28;
+    const double t30 = t16 * t29;
+    const double t31 = t16 * K_fx;
+    const double t32 = K_s * t30 - t24 * t31;
+    const double t33 = K_s * t16;
+    const double t34 = -t23;
+    const double t35 = K_fy * t30;
+    const double t36 = t16 * K_fy;
+    res[0] = K_fx * t24 + (K_u0 - z_x - K_s * t29);
+    res[1] = K_v0 - z_y - t29 * K_fy;
     if (res_D_x != NULL) {
         res_D_x[0] = K_s + t28 * t32;
-        res_D_x[1] = t32 * t33 - K_fx;
-        res_D_x[2] = t28 * t30 + t31 * t33;
-        res_D_x[3] = t30;
-        res_D_x[4] = t31;
-        res_D_x[5] = -t32;
+        res_D_x[1] = t23 * t32 - K_fx;
+        res_D_x[2] = t33 * t34 - t28 * t31;
+        res_D_x[3] = t31;
+        res_D_x[4] = t33;
+        res_D_x[5] = t32;
         res_D_x[6] = K_fy + t28 * t35;
-        res_D_x[7] = t33 * t35;
-        res_D_x[8] = t33 * t34;
+        res_D_x[7] = t23 * t35;
+        res_D_x[8] = t34 * t36;
         res_D_x[9] = 0.0;
-        res_D_x[10] = t34;
-        res_D_x[11] = -t35;
+        res_D_x[10] = t36;
+        res_D_x[11] = t35;
     }
     if (res_D_p != NULL) {
-        res_D_p[0] = t5 * t32 - (t17 * t30 + t25 * t31);
-        res_D_p[1] = t10 * t32 - (t20 * t30 + t26 * t31);
-        res_D_p[2] = t14 * t32 - (t21 * t30 + t27 * t31);
-        res_D_p[3] = t5 * t35 - t25 * t34;
-        res_D_p[4] = t10 * t35 - t26 * t34;
-        res_D_p[5] = t14 * t35 - t27 * t34;
+        res_D_p[0] = t27 * t33 + t22 * t31 - t9 * t32;
+        res_D_p[1] = t25 * t33 - t19 * t31 - t4 * t32;
+        res_D_p[2] = t13 * t32 + (t20 * t31 - t26 * t33);
+        res_D_p[3] = t27 * t36 - t9 * t35;
+        res_D_p[4] = t25 * t36 - t4 * t35;
+        res_D_p[5] = t13 * t35 - t26 * t36;
     }
     return 0;
 }

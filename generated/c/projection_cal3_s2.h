@@ -41,7 +41,7 @@
  * Outside of the domain (results NaN; in C the status has the bit):
  *   bit 0: point behind the camera
  *
- * Operations: 52 (residual only), 98 (with Jacobians)
+ * Operations: 52 (residual only), 97 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

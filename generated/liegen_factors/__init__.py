@@ -69,7 +69,7 @@
 #   between_so3: 89, with Jacobians 182
 #   projection_cal3_bundler: 58, with Jacobians 129
 #   projection_cal3_ds2: 75, with Jacobians 171
-#   projection_cal3_s2: 52, with Jacobians 98
+#   projection_cal3_s2: 52, with Jacobians 97
 #   sfm_cal3_bundler: 58, with Jacobians 136
 #   sfm_cal3_s2: 52, with Jacobians 98
 #   prior_r2: 2, with Jacobians 2

@@ -25,8 +25,8 @@ from liegen.program.passes import optimise
 from liegen.program.rewrite import uncollected
 from liegen.trace import Graph, Parameter, aligned, formula, jacobian_formulas, latex, latex_name, latex_rows
 
-#: Orders whose counts are that close to the best one's are carried out.
-CLOSE = 1.005
+#: Orders whose counts are that close to the best one's are carried out: by this ratio, or this difference.
+CLOSE, NEXT = 1.005, 2
 
 
 @uncollected()
@@ -81,11 +81,11 @@ def _ways(graph: Graph, values: Expressions) -> list[Way]:
 def _candidates(
     ways: Sequence[Way], begun: Program, weighting: Weighting | None
 ) -> Iterator[tuple[str, Program, tuple[tuple[str, int], ...]]]:
-    """The order, program and passes of each choice whose count is within ``CLOSE`` of the best one's."""
+    """The order, program and passes of each choice whose count is close to the best one's."""
     found = ranked(ways, begun)
     least = min(count for count, *_ in found)
     for count, way, name in found:
-        if count <= CLOSE * least:
+        if count <= max(CLOSE * least, least + NEXT):
             blocks = way.local.jacobians(STRATEGIES[name])
             yield name, *optimise(lowered(way.graph, way.values, blocks, weighting))
 
