@@ -19,8 +19,8 @@ from liegen.program.rewrite import Builder
 from liegen.verify import verify
 from liegen.verify.backends import program_evaluator
 from liegen.verify.draws import batch, draw_samples
-from liegen.verify.sphere_slack import slack_of
 from liegen.verify.run import library as every_factor
+from liegen.verify.sphere_slack import slack_of
 
 WEIGHTED = [
     library.between_se3.whitened("full"),
