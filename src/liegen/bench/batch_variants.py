@@ -21,7 +21,7 @@ from liegen.program import Port
 from liegen.verify.batches import DTYPES, In, Out, batch_function
 
 from . import draws
-from .build import Run
+from .build import Run, aligned
 from .ours import PACKAGE
 from .timing import in_turn
 from .variant import FLAGS, Task, offsets
@@ -116,9 +116,9 @@ def run_of(
     given: list[Array] = []
     for port, start in zip(task.inputs, offsets(task.inputs), strict=True):
         part = inputs[:, start : start + port.size]
-        given.append(aligned(part.size, dtype))
+        given.append(aligned(part.size, dtype, LINE))
         given[-1][:] = (part.T if case.structure_of_arrays else part).ravel()
-    made = into or {port.name: aligned(n * port.size, dtype) for port in task.outputs}
+    made = into or {port.name: aligned(n * port.size, dtype, LINE) for port in task.outputs}
     ins = [In(a.ctypes.data, *steps(p), None) for p, a in zip(task.inputs, given, strict=True)]
     outs = [
         Out(made[p.name].ctypes.data, *steps(p)) if p.name in case.wanted else Out(None, 0, 0)
@@ -131,10 +131,3 @@ def run_of(
             function(n, *ins, *outs, None)
 
     return run
-
-
-def aligned(size: int, dtype: np.dtype[Any]) -> Array:
-    """An array that begins at a line of the cache."""
-    room = np.zeros(size + LINE // dtype.itemsize, dtype)
-    first = -room.ctypes.data % LINE // dtype.itemsize
-    return room[first : first + size]

@@ -10,6 +10,7 @@ import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +25,8 @@ Array = NDArray[np.float64]
 Run = Callable[[], None]
 CPP_COMPILERS = ("c++", "g++", "clang++")
 CPP_SUFFIX = ".cc"
-#: Numbers in a page of memory.
-PAGE = 512
+#: A page of memory [bytes].
+PAGE = 4096
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,7 @@ class Loaded:
     def buffer(self) -> Array:
         """Room for its outputs, a row a call, from the start of a page: where it lies must not decide."""
         shape = (self.variant.rows, sum(port.size for port in self.task.outputs))
-        room = np.zeros(PAGE + shape[0] * shape[1])
-        start = -room.ctypes.data // room.itemsize % PAGE
-        return room[start : start + shape[0] * shape[1]].reshape(shape)
+        return aligned(shape[0] * shape[1], np.dtype(np.float64), PAGE).reshape(shape)
 
     def results(self, inputs: Array) -> Array:
         """All outputs by input, (inputs, outputs), row-major port after port."""
@@ -59,6 +58,13 @@ class Loaded:
             self.run(inputs[k : k + 1], buffer)()
             found.append(buffer[0].copy())
         return _row_major(self.task, np.array(found)) if self.variant.column_major else np.array(found)
+
+
+def aligned(size: int, dtype: np.dtype[Any], boundary: int) -> NDArray[Any]:
+    """An array of zeros that begins at a multiple of so many bytes."""
+    room = np.zeros(size + boundary // dtype.itemsize, dtype)
+    first = -room.ctypes.data % boundary // dtype.itemsize
+    return room[first : first + size]
 
 
 def _row_major(task: Task, found: Array) -> Array:
