@@ -13,6 +13,7 @@ from liegen.kernel import Kernel
 from liegen.program import Program
 from liegen.program.rewrite import Builder, rebuilt
 
+from .precision import statement
 from .printer import Assignment, Listing, Store, condition_indices, print_program
 from .syntax import CHOICE, PREFIX, PRODUCT, SUM, Operator, Syntax, spell
 from .target import scalar_names, words
@@ -35,12 +36,6 @@ SYNTAX = Syntax(
     lift="lanes_of({0})",
     sincos="lanes_sincos({0}, &{1}, &{2})",
 )  # fmt: skip
-
-_FORMATS = {
-    "scalar": "const lanes {0} = {1};",
-    "condition": "const lanes_mask {0} = {1};",
-    "pair": "lanes {0}; {1};",
-}
 
 
 @dataclass(frozen=True)
@@ -125,7 +120,7 @@ def _fresh(name: str, used: Collection[str]) -> str:
 
 
 def _assign(assignment: Assignment) -> str:
-    return _FORMATS[assignment.kind].format(assignment.name, assignment.text)
+    return statement(assignment, "lanes", "lanes_mask")
 
 
 def _stores(stores: Sequence[Store], turned: Collection[str]) -> list[str]:

@@ -12,8 +12,8 @@ from liegen.program import Port, Program
 from .c_batch import BATCH_NAMES, batch_names, printed_batches
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .lanes_text import DOUBLES, SINGLES
-from .precision import DOUBLE, SINGLE, Precision, precisions
-from .printer import Assignment, Listing, Store, print_program
+from .precision import DOUBLE, SINGLE, Precision, precisions, statement
+from .printer import Listing, Store, print_program
 from .scalar_text import scalar_text
 from .syntax import CHOICE, COMPARISON, PREFIX, PRODUCT, SUM, Operator, Syntax
 from .target import Options, Sheet, Target, scalar_names, words
@@ -49,11 +49,6 @@ def _syntax(precision: Precision, package: str) -> Syntax:
     )
 
 
-_FORMATS = {
-    "scalar": "const {0} {1} = {2};",
-    "condition": "const int {1} = {2};",
-    "pair": "{0} {1}; {2};",
-}
 #: Operations that are calls of the package's own functions, the sine where the cosine is wanted too.
 _OWN = words("atan2 sin")
 _STATUS = "The result is 0, or the bits of the requirements that do not hold."
@@ -109,10 +104,6 @@ def _names(kernel: Kernel) -> tuple[str, ...]:
     return (kernel.name, value_name(kernel), f"{kernel.name}_cm")
 
 
-def _assign(assignment: Assignment, precision: Precision) -> str:
-    return _FORMATS[assignment.kind].format(precision.type, assignment.name, assignment.text)
-
-
 def _stores(port: Port, stores: Sequence[Store], column_major: bool) -> tuple[str, ...]:
     if column_major:
         stores = sorted(stores, key=lambda store: store.index[::-1])
@@ -151,7 +142,7 @@ def _function(
         fallback=f"{prefix}{value_name(kernel)}{precision.suffix}({', '.join(passed)})",
         unused=tuple(a.name for a in kernel.arguments if a.name not in read),
         loads=tuple(f"const {scalar} {load.name} = {load.port}[{load.index}];" for load in listing.loads),
-        guard=tuple(_assign(a, precision) for a in listing.guard),
+        guard=tuple(statement(a, scalar, "int") for a in listing.guard),
         status=_status(listing),
         outputs=tuple(
             Output(
@@ -163,7 +154,7 @@ def _function(
             for port, stores in zip(program.outputs, listing.stores, strict=True)
         ),
         jacobians=jacobians,
-        body=tuple(_assign(a, precision) for a in listing.body),
+        body=tuple(statement(a, scalar, "int") for a in listing.body),
         fill=f"{options.package}_{kernel.name}_fill{precision.suffix}",
     )
 

@@ -22,7 +22,7 @@ def gathered_methods(kernel: Kernel) -> tuple[Method, ...]:
 
 
 def gathers_source(kernel: Kernel, options: Options) -> str:
-    """The C of the loops of a factor; one loop for each choice of arguments that are gathered."""
+    """The C of the loops of a factor: one a method, whichever arguments are gathered."""
     package = options.package
     return lay_out(
         "runtime/gathers.c.j2",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .printer import Assignment
 from .syntax import spell
 
 
@@ -40,6 +41,18 @@ SINGLE = Precision("float", "_f32", "f", _spell_single)
 def precisions(scalar: str) -> tuple[Precision, ...]:
     """What is emitted where ``scalar`` is chosen: double always, float too where it is asked for."""
     return (DOUBLE, SINGLE) if scalar == SINGLE.type else (DOUBLE,)
+
+
+_STATEMENTS = {
+    "scalar": "const {0} {2} = {3};",
+    "condition": "const {1} {2} = {3};",
+    "pair": "{0} {2}; {3};",
+}
+
+
+def statement(assignment: Assignment, number: str, condition: str) -> str:
+    """An assignment in C, with the types of numbers and of conditions."""
+    return _STATEMENTS[assignment.kind].format(number, condition, assignment.name, assignment.text)
 
 
 _COMMENT_OR_WORD = re.compile(
