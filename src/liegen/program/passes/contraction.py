@@ -33,6 +33,5 @@ def contract(program: Program) -> Program:
     found = signs(work.emitted())
     if found.operations > program.operations:
         return program
-    instructions = found.operations - fused(found), program.operations - before
-    better = (instructions[0], critical_path(found)) < (instructions[1], longest)
-    return found if better else program
+    cost = found.operations - fused(found), critical_path(found)
+    return found if cost < (program.operations - before, longest) else program
