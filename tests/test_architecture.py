@@ -13,7 +13,7 @@ SOURCE = ROOT / "src" / "liegen"
 LAYERS = (
     "errors", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
     "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton", "define", "decorate",
-    "samples", "library", "modules", "sources", "emit",
+    "samples", "library", "modules", "user_code", "sources", "emit",
     "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.

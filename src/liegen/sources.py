@@ -8,16 +8,16 @@ import hashlib
 import importlib
 import importlib.util
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import ModuleType, TracebackType
+from types import ModuleType
 from typing import Any
 
 from liegen.define import Function
-from liegen.errors import DefinitionError, LiegenError, Site, SourceError
+from liegen.errors import DefinitionError, Site, SourceError
 from liegen.modules import group_functions, group_named
-from liegen.trace import unknown_annotation
+from liegen.user_code import guarded
 
 AnyFunction = Function[..., Any]
 LIBRARY = "liegen.library"
@@ -38,8 +38,7 @@ def load(source: str | None, groups: Iterable[str] = ()) -> tuple[AnyFunction, .
     if names:
         return _of_groups(source, names)
     name = source if source is not None else LIBRARY
-    module = _import_file(Path(name)) if _is_file(name) else _import_module(name)
-    tree = _tree(module)
+    module, tree = _import_file(Path(name)) if _is_file(name) else _import_module(name)
     _refuse_redefinitions(module, tree)
     foreign = _imported_names(tree, module)
     values: dict[str, Any] = vars(module)
@@ -81,8 +80,12 @@ def _is_file(source: str) -> bool:
     return source.endswith(".py") or "/" in source or "\\" in source or Path(source).is_file()
 
 
-def _import_file(path: Path) -> ModuleType:
-    """Run a file as a module under a name of its own, so that it hides no other module."""
+def _import_file(path: Path) -> tuple[ModuleType, ast.Module]:
+    """Run a file as a module under a name of its own, so that it hides no other module.
+
+    Its folder comes first on ``sys.path`` while the file runs, and last afterwards: a neighbour with the name
+    of a package does not hide what liegen itself still has to load.
+    """
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "does not exist"
         raise SourceError(f"{path} {what}; give a Python file with factors, or a dotted module")
@@ -90,87 +93,59 @@ def _import_file(path: Path) -> ModuleType:
     key = hashlib.sha256(str(place).encode()).hexdigest()[:8]
     module = ModuleType(f"_liegen_{place.stem}_{key}")
     module.__file__ = str(place)
-    if str(place.parent) not in sys.path:
-        sys.path.insert(0, str(place.parent))
-    with _clear_errors(str(path), str(place)):
-        code = compile(place.read_bytes(), str(place), "exec", dont_inherit=True)
+    try:
+        text = place.read_bytes()
+    except OSError as error:
+        raise SourceError(f"{path} cannot be read: {error.strerror}") from None
+    with guarded(str(path), str(place)), _first_on_path(str(place.parent)):
+        tree = ast.parse(text, str(place))
+        code = compile(text, str(place), "exec", dont_inherit=True)
         sys.modules[module.__name__] = module
         exec(code, vars(module))
-    return module
-
-
-def _import_module(name: str) -> ModuleType:
-    """Import a dotted module as ``python -m`` would: the current folder counts."""
-    if not all(part.isidentifier() for part in name.split(".")):
-        raise SourceError(f"{name!r} is neither a Python file nor a dotted module")
-    here = str(Path.cwd())
-    if here not in sys.path and "" not in sys.path:
-        sys.path.insert(0, here)
-    try:
-        missing = importlib.util.find_spec(name) is None  # imports the packages above
-    except ModuleNotFoundError as error:
-        missing = error.name is not None and (name + ".").startswith(error.name + ".")
-        if not missing:
-            raise SourceError(f"{name}: {_plain(error)}") from None
-    except Exception as error:
-        raise SourceError(f"{name}: {_plain(error)}") from None
-    if missing:
-        file = Path(*name.split(".")).with_suffix(".py")
-        hint = f"; did you mean the file {file}?" if file.is_file() else "; a file ends in .py"
-        raise SourceError(f"there is no module {name!r}{hint}")
-    spec: Any = importlib.util.find_spec(name)
-    with _clear_errors(name, str(spec.origin)):
-        return importlib.import_module(name)
+    return module, tree
 
 
 @contextmanager
-def _clear_errors(source: str, file: str) -> Any:
-    """Turn whatever a user's file raises into one line that names the file and the line."""
+def _first_on_path(folder: str) -> Generator[None]:
+    importlib.import_module("casadi")  # needed while factors are traced, with the folder in front
+    if folder in sys.path:
+        yield
+        return
+    sys.path.insert(0, folder)
     try:
         yield
-    except LiegenError as error:
-        site = _site(error.__traceback__, file)
-        text = str(error)
-        raise type(error)(text if site is None or f"{site.file}:" in text else f"{site}: {text}") from None
-    except SyntaxError as error:
-        where = Site(Path(error.filename or source).name, error.lineno or 0)
-        line = f": {error.text.strip()}" if error.text else ""
-        raise SourceError(f"{where}: syntax error ({error.msg}){line}") from None
-    except (Exception, SystemExit) as error:
-        site = _site(error.__traceback__, file)
-        if isinstance(error, NameError) and site is not None:
-            _refuse_annotation(error, site, file)
-        raise SourceError(f"{site or source}: {_plain(error)}") from None
+    finally:
+        sys.path[:] = [entry for entry in sys.path if entry != folder] + [folder]
 
 
-def _refuse_annotation(error: NameError, site: Site, file: str) -> None:
-    """Name the factor and the argument when the unknown name is an annotation."""
-    for node in ast.walk(ast.parse(Path(file).read_bytes())):
-        if isinstance(node, ast.FunctionDef):
-            for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs):
-                names = [n for n in ast.walk(argument) if isinstance(n, ast.Name) and n.id == error.name]
-                if names and site.line in (node.lineno, argument.lineno):
-                    raise unknown_annotation(site, node.name, argument.arg, str(error.name)) from None
+def _import_module(name: str) -> tuple[ModuleType, ast.Module]:
+    """Import a dotted module as ``python -m`` would: the current folder counts."""
+    if not all(part.isidentifier() for part in name.split(".")):
+        raise SourceError(f"{name!r} is neither a Python file nor a dotted module")
+    with _first_on_path(str(Path.cwd())):
+        return _imported(name)
 
 
-def _plain(error: BaseException) -> str:
-    """An exception in one line, with a cure where there is a common one."""
-    if isinstance(error, ModuleNotFoundError):
-        return f"cannot import {error.name}; install it, or run liegen where it is installed"
-    if isinstance(error, SystemExit):
-        return 'it ends the program when imported; put that under if __name__ == "__main__":'
-    text = " ".join(str(error).split())
-    return f"{type(error).__name__}: {text}" if text else type(error).__name__
+def _imported(name: str) -> tuple[ModuleType, ast.Module]:
+    spec: Any = _spec(name)
+    if spec is None:
+        file = Path(*name.split(".")).with_suffix(".py")
+        hint = f"; did you mean the file {file}?" if file.is_file() else "; a file ends in .py"
+        raise SourceError(f"there is no module {name!r}{hint}")
+    with guarded(name, str(spec.origin)):
+        module = importlib.import_module(name)
+        return module, _tree(module)
 
 
-def _site(traceback: TracebackType | None, file: str) -> Site | None:
-    """The last line of the user's file that was being run."""
-    site = None
-    while traceback is not None:
-        if traceback.tb_frame.f_code.co_filename == file:
-            site = Site(Path(file).name, traceback.tb_lineno)
-        traceback = traceback.tb_next
-    return site
+def _spec(name: str) -> Any:
+    """Where a module is; None where there is none. Runs the packages above."""
+    with guarded(name, ""):
+        try:
+            return importlib.util.find_spec(name)
+        except ModuleNotFoundError as error:
+            if error.name is not None and (name + ".").startswith(error.name + "."):
+                return None
+            raise
 
 
 def _tree(module: ModuleType) -> ast.Module:

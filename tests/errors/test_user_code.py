@@ -1,0 +1,107 @@
+"""A file of factors is a program: what it does to the process is undone, what it raises becomes one line."""
+
+import subprocess
+import sys
+
+import pytest
+from click.testing import CliRunner
+
+from liegen.cli import app
+
+FACTOR = "\n\nfrom liegen import R3, factor\n\n\n@factor\ndef pull(x: R3, *, z: R3):\n    return x - z\n"
+
+#: What stands before the factor, and what the message says.
+RAISES = {
+    "BaseException": ("raise BaseException('over')", ["factors.py:1", "BaseException: over"]),
+    "GeneratorExit": ("raise GeneratorExit", ["factors.py:1", "GeneratorExit"]),
+    "SystemExit": ("raise SystemExit(0)", ["factors.py:1", "ends the program", "__main__"]),
+    "os._exit": ("import os\nos._exit(0)", ["factors.py:2", "ends the program"]),
+    "os.abort": ("import os\nos.abort()", ["factors.py:2", "ends the program"]),
+    "text of the error fails": (
+        "class Sly(Exception):\n    def __str__(self):\n        raise ValueError\n\n\nraise Sly",
+        ["factors.py:6", "Sly", "cannot be shown"],
+    ),
+    "text of the error ends the program": (
+        "class Sly(Exception):\n    def __str__(self):\n        raise SystemExit(0)\n\n\nraise Sly",
+        ["factors.py:6", "Sly", "cannot be shown"],
+    ),
+    "endless recursion": ("def f():\n    return f()\n\n\nf()", ["factors.py:2", "RecursionError"]),
+    "not UTF-8": (b"name = '\xff'", ["factors.py", "syntax error", "utf-8"]),
+    "null byte": ("name = '\0'", ["factors.py", "null bytes"]),
+    "of no known encoding": ("# coding: nothing", ["factors.py", "syntax error", "nothing"]),
+}
+
+#: What stands before the factor and is undone.
+HARMLESS = {
+    "changes the folder": "import os\nos.chdir('elsewhere')",
+    "replaces stdout": "import sys\nsys.stdout = None",
+    "replaces stderr": "import io, sys\nsys.stderr = io.StringIO()",
+    "raises for warnings": "import warnings\nwarnings.simplefilter('error')",
+    "raises for NaN": "import numpy as np\nnp.seterr(all='raise')",
+    "limits recursion": "import sys\nsys.setrecursionlimit(200)",
+    "deletes itself": "import os\nos.remove(__file__)",
+    "ends later": "import os\nleave = os._exit",
+}
+
+
+def written(folder, head):
+    head = head if isinstance(head, bytes) else head.encode()
+    (folder / "factors.py").write_bytes(head + FACTOR.encode())
+    (folder / "elsewhere").mkdir()
+
+
+@pytest.mark.parametrize("name", RAISES)
+@pytest.mark.parametrize("command", [["list"], ["generate", "-o", "out"], ["verify"], ["explain", "pull"]])
+def test_what_a_file_raises_is_one_line(name, command, tmp_path, monkeypatch):
+    head, says = RAISES[name]
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path, head)
+    done = CliRunner().invoke(app, [command[0], *command[1:], "factors.py"])
+    assert done.exit_code == 2, done.output
+    assert done.stderr.count("\n") == 1
+    assert "Traceback" not in done.stderr
+    for words in says:
+        assert words in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", HARMLESS)
+def test_what_a_file_changes_of_the_process_is_undone(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path, HARMLESS[name])
+    done = CliRunner().invoke(app, ["generate", "factors.py", "-o", "out"])
+    assert done.exit_code == 0, done.output
+    assert "pull" in done.stdout
+    assert (tmp_path / "out" / "c" / "pull.c").is_file()
+    assert not any((tmp_path / "elsewhere").iterdir())
+
+
+def test_a_file_that_closes_the_output(tmp_path):
+    written(tmp_path, "import sys\nsys.stdout.close()\nsys.stderr.close()")
+    done = subprocess.run(
+        [sys.executable, "-m", "liegen", "list", "factors.py"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert "pull" in done.stdout
+
+
+@pytest.mark.parametrize("name", ["numpy", "math", "casadi", "sympy", "mpmath", "jinja2", "random", "rich"])
+def test_a_file_may_have_the_name_of_a_package(name, tmp_path):
+    (tmp_path / f"{name}.py").write_text(FACTOR.lstrip())
+    source, output = str(tmp_path / f"{name}.py"), str(tmp_path / "out")
+    command = [sys.executable, "-m", "liegen.__main__", "generate", source, "-o", output]
+    done = subprocess.run(command, cwd=tmp_path.parent, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("end", ["import sys\nsys.exit(0)", "import os\nos._exit(0)", "raise GeneratorExit"])
+def test_a_package_that_ends_the_program(end, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "leaving").mkdir()
+    (tmp_path / "leaving" / "__init__.py").write_text(end)
+    (tmp_path / "leaving" / "factors.py").write_text(FACTOR)
+    for name in ("leaving", "leaving.factors"):
+        done = CliRunner().invoke(app, ["list", name])
+        assert done.exit_code == 2
+        assert "leaving" in done.stderr
+        assert done.stderr.count("\n") == 1
