@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
+    "errors", "text", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
     "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton", "define", "decorate",
     "samples", "library", "modules", "user_code", "sources", "emit",
     "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",

@@ -12,6 +12,7 @@ from liegen.derive import function_latex, noise_lines, weights_of
 from liegen.kernel import Kernel
 from liegen.manifolds import Leaf
 from liegen.program.kinds import kinds as grouped
+from liegen.text import latex_comment
 from liegen.trace import Graph, jacobian_formulas
 from liegen.trace.jacobian_text import legend
 
@@ -87,7 +88,7 @@ def latex_explanation(function: AnyFunction) -> str:
     weighed = noise_lines(shown, function.weighting)
     comments = [f"{row.name}({row.arguments}) -> {row.results}", *legend(jacobian_formulas(shown)), *weighed]
     text = function_latex(shown, function.weighting)
-    return "".join(f"% {line}\n" for line in comments) + text + "\n"
+    return latex_comment(comments) + text + "\n"
 
 
 _KIND_NOTES = (

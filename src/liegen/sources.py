@@ -7,6 +7,7 @@ import difflib
 import hashlib
 import importlib
 import importlib.util
+import os
 import sys
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
@@ -90,7 +91,7 @@ def _import_file(path: Path) -> tuple[ModuleType, ast.Module]:
         what = "is a folder" if path.is_dir() else "does not exist"
         raise SourceError(f"{path} {what}; give a Python file with factors, or a dotted module")
     place = path.resolve()
-    key = hashlib.sha256(str(place).encode()).hexdigest()[:8]
+    key = hashlib.sha256(os.fsencode(place)).hexdigest()[:8]
     module = ModuleType(f"_liegen_{place.stem}_{key}")
     module.__file__ = str(place)
     try:

@@ -2,6 +2,8 @@
 
 import pytest
 
+from liegen import R3, SO3, NavState, factor
+from liegen.trace import latex
 from liegen.trace.latex_names import latex_name, latex_number, spelled
 
 
@@ -34,3 +36,13 @@ def test_names_that_would_look_alike_stay_apart():
 )
 def test_numbers(value, expected):
     assert latex_number(value) == expected
+
+
+def test_operations_are_called_as_they_are_written():
+    @factor
+    def flight(R: SO3, p: R3, v: R3, *, z: NavState):
+        return z.local(NavState(R, p, v))
+
+    text = latex(flight.graph)
+    assert r"\mathrm{NavState}\left(R,\, p,\, v\right)" in text
+    assert r"\_" not in text

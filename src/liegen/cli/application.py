@@ -9,6 +9,7 @@ import click
 
 from liegen import __version__
 from liegen.errors import LiegenError
+from liegen.text import printable
 
 from .bench import bench
 from .check import check
@@ -49,13 +50,15 @@ class App(click.Group):
         except LiegenError as error:
             if debug:
                 raise
-            raise Refused(str(error)) from None
+            raise Refused(printable(error)) from None
         except Exception as error:
             if debug:
                 raise
             text = " ".join(f"{type(error).__name__}: {error}".split())
             again = f"liegen --debug {ctx.invoked_subcommand} ..."
-            raise Internal(f"liegen itself failed: {text}\nSee the traceback with: {again}") from None
+            raise Internal(
+                f"liegen itself failed: {printable(text)}\nSee the traceback with: {again}"
+            ) from None
 
 
 @click.group(cls=App, context_settings={"help_option_names": ["-h", "--help"]})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .generate import Request, generate, rendered, requested
-from .shared import source_argument
+from .shared import say, source_argument
 
 if TYPE_CHECKING:
     from liegen.emit import TreeReport
@@ -39,10 +39,10 @@ def check(directory: str, source: str | None) -> None:
         files = rendered(request, request.chosen(request.source), stated)
         report = check_tree(files, folder)
         for line in _lines(report, folder, len(files)):
-            click.echo(line)
+            say(line)
         if not report.ok:
             clean = False
-            click.echo(f"mend it with: {request.command(request.source, str(folder))}")
+            say(f"mend it with: {request.command(request.source, str(folder))}")
     if not clean:
         raise click.exceptions.Exit(1)
 

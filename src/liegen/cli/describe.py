@@ -6,12 +6,15 @@ import json
 
 import click
 
+from liegen.text import in_json
+
 from .shared import (
     Convention,
     chosen,
     convention_options,
     groups_option,
     noise_options,
+    say,
     source_argument,
     table,
     weighed,
@@ -28,7 +31,7 @@ def list_factors(source: str | None, groups: tuple[str, ...], as_json: bool) -> 
 
     rows = [summary(f) for f in chosen(source, (), groups)]
     if as_json:
-        click.echo(json.dumps([row.as_json() for row in rows], indent=2, ensure_ascii=False))
+        click.echo(in_json(json.dumps([row.as_json() for row in rows], indent=2, ensure_ascii=False)))
         return
     table(
         ("factor", "arguments", "result", "meaning"),
@@ -60,4 +63,4 @@ def explain(
 
     convention = Convention(chart, layout, normalise)
     (function,) = weighed(chosen(source, [name], groups, convention), noise, loss, mode)
-    click.echo((latex_explanation if as_latex else explanation)(function), nl=False)
+    say((latex_explanation if as_latex else explanation)(function), nl=False)

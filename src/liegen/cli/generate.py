@@ -20,6 +20,7 @@ from .shared import (
     groups_option,
     names_option,
     noise_options,
+    say,
     source_argument,
     table,
     tracked,
@@ -183,14 +184,10 @@ def generate(output: str, **given: Any) -> None:
         [_row(kernel) for kernel in kernels],
         right=(1, 2),
     )
-    click.echo()
+    say()
     for path in done.removed:
-        click.echo(f"removed {Path(output, path)}")
+        say(f"removed {Path(output, path)}")
     many = f"{len(functions)} factors" if len(functions) > 1 else "1 factor"
-    click.echo(
-        f"derived {many} in {times[1] - times[0]:.2f} s, checked and rendered in {times[2] - times[1]:.2f} s"
-    )
+    say(f"derived {many} in {times[1] - times[0]:.2f} s, checked and rendered in {times[2] - times[1]:.2f} s")
     folders = sorted({str(Path(output, path).parent) for path in files if "/" in path})
-    click.echo(
-        f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date) to {' and '.join(folders)}"
-    )
+    say(f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date) to {' and '.join(folders)}")

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from liegen.text import one_line, printable
+
 if TYPE_CHECKING:
     from liegen.sources import AnyFunction
 
@@ -126,9 +128,14 @@ def count(n: int, noun: str) -> str:
     return f"{n} {noun}{'' if n == 1 else 's'}"
 
 
+def say(text: str = "", *, nl: bool = True) -> None:
+    """Print text that may hold what users wrote: a terminal gets no control characters."""
+    click.echo(printable(text), nl=nl)
+
+
 def table(titles: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collection[int] = ()) -> None:
     """Print a table: ruled on a terminal, plain columns anywhere else."""
-    content = [list(row) for row in rows]
+    content = [[one_line(cell) for cell in row] for row in rows]
     if sys.stdout.isatty():
         from rich.box import SIMPLE_HEAD
         from rich.console import Console
@@ -146,7 +153,7 @@ def table(titles: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collec
     for row in [titles, *content]:
         sized = enumerate(zip(row, widths, strict=True))
         cells = [cell.rjust(w) if k in right else cell.ljust(w) for k, (cell, w) in sized]
-        click.echo("  ".join(cells).rstrip())
+        say("  ".join(cells).rstrip())
 
 
 def tracked(items: Sequence[T], what: str, label: Callable[[T], str]) -> Iterator[T]:
@@ -157,7 +164,7 @@ def tracked(items: Sequence[T], what: str, label: Callable[[T], str]) -> Iterato
     with progress() as bar:
         task = bar.add_task(what, total=len(items))
         for item in items:
-            bar.update(task, description=f"{what} {label(item)}")
+            bar.update(task, description=one_line(f"{what} {label(item)}"))
             yield item
             bar.advance(task)
 
@@ -172,7 +179,7 @@ def bar(title: str, verb: str) -> Generator[Callable[[str, int, int], None] | No
         task = shown.add_task(title, total=None)
 
         def told(what: str, done: int, total: int) -> None:
-            shown.update(task, completed=done, total=total, description=f"{verb} {what}")
+            shown.update(task, completed=done, total=total, description=one_line(f"{verb} {what}"))
 
         yield told
 

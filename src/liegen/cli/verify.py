@@ -19,6 +19,7 @@ from .shared import (
     groups_option,
     names_option,
     noise_options,
+    say,
     source_argument,
     table,
     weighed,
@@ -122,9 +123,9 @@ def _print(report: Report, seconds: float) -> None:
     )
     for factor in report.factors:
         for line in _remarks(factor):
-            click.echo(line)
+            say(line)
     for line in _skipped(report.factors):
-        click.echo(line)
+        say(line)
     _print_single(report.factors)
     _print_off_unit(report.factors)
     click.echo()

@@ -1,4 +1,4 @@
-"""The text at the top of every generated file, and how text becomes a comment or a docstring."""
+"""The text at the top of every generated file, and the docstrings of Python functions, as lines."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from textwrap import wrap
 
 from liegen.kernel import Argument, Kernel, Output, Stored
 from liegen.program import Program
+from liegen.text import one_line
 
 from .target import Options
 
@@ -134,38 +135,5 @@ def _wrapped(line: str) -> list[str]:
 
 
 def _section(title: str, lines: Sequence[str]) -> list[str]:
-    inner = [part for text in lines for line in text.splitlines() for part in _wrapped(line)]
+    inner = [part for text in lines for line in text.splitlines() for part in _wrapped(one_line(line))]
     return ["", f"{title}:", *inner] if inner else []
-
-
-def hash_comment(lines: Sequence[str]) -> str:
-    """A block of ``#`` comments."""
-    return "\n".join(f"# {line}".rstrip() for line in lines)
-
-
-def c_comment(lines: Sequence[str]) -> str:
-    """A C comment; whatever the text holds, it neither ends the comment nor opens one within."""
-    inner = [line.replace("*/", "* /").replace("/*", "/ *") for line in lines]
-    return "/*\n" + "\n".join(f" * {line}".rstrip() for line in inner) + "\n */"
-
-
-def docstring(lines: Sequence[str], indent: int) -> str:
-    """A Python docstring; whatever the text holds, it does not end the literal."""
-    safe = [line.rstrip().replace("\\", "\\\\").replace('"""', '\\"\\"\\"') for line in lines]
-    safe[-1] += " " if safe[-1].endswith('"') and len(safe) == 1 else ""
-    pad = " " * indent
-    body = "\n".join(f"{pad}{line}".rstrip() for line in safe).lstrip()
-    end = f"\n{pad}" if len(safe) > 1 else ""
-    return f'"""{body}{end}"""'
-
-
-def c_string(text: str) -> str:
-    """A C string literal, one line of text a line."""
-    lines = [_escaped(line) for line in text.split("\n")]
-    return "\n    ".join(f'"{line}"' for line in [*(f"{line}\\n" for line in lines[:-1]), lines[-1]])
-
-
-def _escaped(line: str) -> str:
-    plain = {ord(c): f"\\{c}" for c in '"\\?'}  # ?: no trigraphs
-    escaped = line.translate(plain)
-    return "".join(c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode()) for c in escaped)

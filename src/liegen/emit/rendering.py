@@ -11,6 +11,7 @@ from liegen.errors import OutputError
 from liegen.kernel import Kernel
 from liegen.program import Program
 from liegen.program.kinds import kinds
+from liegen.text import in_json
 
 from .header import closing, content, package_header
 from .names import check_names
@@ -100,7 +101,7 @@ def _manifest(
         "factors": {kernel.name: _facts(kernel) for kernel in kernels},
         "files": {path: digest(text) for path, text in files.items()},
     }
-    return json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+    return in_json(json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False)) + "\n"
 
 
 def _facts(kernel: Kernel) -> dict[str, Any]:

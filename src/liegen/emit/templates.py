@@ -10,7 +10,8 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from .header import c_comment, c_string, docstring, hash_comment
+from liegen.text import c_comment, c_string, docstring, hash_comment
+
 from .precision import in_single
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
+from liegen.text import in_latex
+
 _GREEK = re.compile(
     "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|upsilon|"
     "phi|chi|psi|omega|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Upsilon|Phi|Psi|Omega"
@@ -35,7 +37,13 @@ def latex_name(name: str) -> str:
 
 def upright(name: str) -> str:
     r"""``\mathrm{rear\_left}``."""
-    return rf"\mathrm{{{name.replace('_', chr(92) + '_')}}}"
+    return rf"\mathrm{{{in_latex(name)}}}"
+
+
+def worded(name: str) -> str:
+    r"""``\mathrm{extended\ pose}``: the words of an operation's name."""
+    words = r"\ ".join(in_latex(word) for word in name.split("_") if word)
+    return rf"\mathrm{{{words}}}"
 
 
 def latex_number(value: float) -> str:

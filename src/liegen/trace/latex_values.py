@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from liegen.manifolds import Leaf, Node, Vector
 
 from .blocks import additive, elementwise, exponential, positions
-from .latex_names import latex_name, latex_number, upright
+from .latex_names import latex_name, latex_number, upright, worded
 from .notation import (
     ACTION,
     ATOM,
@@ -160,11 +160,14 @@ def _layout(node: Node) -> Layout:
     method, _, attribute = operation.show.partition("{0}.")
     if name == "part":
         return Layout(f"#0.{latex_name(attribute)}")
-    return _called(name.removesuffix("_of"), not method and bool(attribute), len(dims))
+    of_object = not method and bool(attribute)
+    made = operation.show.partition("(")[0]  # what makes an element is called as its class
+    called = made if made.isidentifier() else name.removesuffix("_of")
+    return _called(called, of_object, len(dims))
 
 
 def _called(name: str, method: bool, operands: int) -> Layout:
     """A method with its object as subscript, or a function."""
     arguments = r",\, ".join(f"#{k}" for k in range(int(method), operands))
-    shown = upright(name) + ("_{#0}" if method else "")
+    shown = worded(name) + ("_{#0}" if method else "")
     return Layout(shown + (in_tall_parentheses(arguments) if arguments else ""))

@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 
 from liegen.manifolds import Node
 
+from .latex_names import worded
+
 #: How strongly a text binds.
 SUM, NEGATIVE, WEAK, PRODUCT, ACTION, POWER, ATOM = range(1, 8)
 
@@ -191,8 +193,8 @@ def in_mathematics(detail: str) -> str:
     found = re.fullmatch(r"(\d*)\[(\w+)\]", detail)
     if not found:
         return detail
-    number, name = found[1], _MAPS.get(found[2], found[2]).replace("_", r"\_")
-    return (f"_{{{number}}}" if number else "") + rf"\left[\mathrm{{{name}}}\right]"
+    number, name = found[1], worded(_MAPS.get(found[2], found[2]))
+    return (f"_{{{number}}}" if number else "") + rf"\left[{name}\right]"
 
 
 TERMINAL = Notation({head: layouts[0] for head, layouts in HEADS.items()}, in_parentheses, str)
