@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,13 +12,16 @@ import click
 
 from liegen.errors import OutputError, ToolError
 
-from .shared import chosen, count, names_option, source_argument, table, tracked
+from .shared import SEED, chosen, count, names_option, new_file, source_argument, table, tracked
 
 if TYPE_CHECKING:
     from liegen.sources import AnyFunction
 
 #: What is measured where no function is named.
 DEFAULT = ("between_se3",)
+#: Kinds of measurement, and the options that belong to one of them.
+MODES = ("peers", "graph", "instructions", "growth")
+OPTIONS = {"chart": "peers", "all_flags": "peers", "compare": "instructions", "write": "instructions"}
 
 
 @click.command()
@@ -28,16 +31,25 @@ DEFAULT = ("between_se3",)
 @click.option("--graph", metavar="FILE", help="Linearise and solve a g2o file of SE(3) beside GTSAM.")
 @click.option("--instructions", is_flag=True, help="Count the instructions of each call with valgrind.")
 @click.option("--growth", is_flag=True, help="Time code generation: cold starts, chains, wide residuals.")
-@click.option("--calls", default=10_000, show_default=True, help="Distinct inputs in a round (--peers).")
-@click.option("--rounds", default=100, show_default=True, help="Rounds; every round runs each variant once.")
-@click.option("--seed", default=0, show_default=True, help="Seed of the inputs.")
-@click.option("--largest", default=1_000_000, show_default=True, help="Largest batch.")
+@click.option(
+    "--calls", type=click.IntRange(1, 10_000_000), default=10_000, show_default=True,
+    help="Distinct inputs in a round (--peers).",
+)  # fmt: skip
+@click.option(
+    "--rounds", type=click.IntRange(1, 100_000), default=100, show_default=True,
+    help="Rounds; every round runs each variant once.",
+)  # fmt: skip
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed of the inputs.")
+@click.option(
+    "--largest", type=click.IntRange(1, 100_000_000), default=1_000_000, show_default=True,
+    help="Largest batch.",
+)  # fmt: skip
 @click.option(
     "--all-flags", is_flag=True, help="A row for every set of compiler flags, not the best (--peers)."
 )
-@click.option("--chart", metavar="FILE", help="Write a bar chart as SVG (--peers).")
+@click.option("--chart", metavar="FILE", callback=new_file, help="Write a bar chart as SVG (--peers).")
 @click.option("--compare", metavar="FILE", help="Beside counts that were written before (--instructions).")
-@click.option("--write", metavar="FILE", help="Write the counts as JSON (--instructions).")
+@click.option("--write", metavar="FILE", callback=new_file, help="Write the counts as JSON (--instructions).")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def bench(context: click.Context, as_json: bool, **options: Any) -> None:
@@ -49,6 +61,7 @@ def bench(context: click.Context, as_json: bool, **options: Any) -> None:
     --peers: the published functions beside what other packages generate for them, checked against a 50-digit
     reference first. Ratios are medians over the rounds, above 1 where liegen is faster.
     """
+    _refuse_unused(options)
     for name, mode in (("graph", _graph), ("instructions", _instructions), ("growth", _growth)):
         if options[name]:
             content = mode(as_json, **options)
@@ -59,6 +72,16 @@ def bench(context: click.Context, as_json: bool, **options: Any) -> None:
         click.echo(json.dumps(content, indent=2))
     if content.get("failed"):
         context.exit(1)
+
+
+def _refuse_unused(options: Mapping[str, Any]) -> None:
+    """Raise UsageError for two kinds of measurement at once, and for an option of another kind."""
+    modes = [name for name in MODES if options[name]]
+    if len(modes) > 1:
+        raise click.UsageError(f"--{modes[0]} and --{modes[1]} are two measurements; give one of them")
+    for option, mode in OPTIONS.items():
+        if options[option] and mode not in modes:
+            raise click.UsageError(f"--{option.replace('_', '-')} is a part of --{mode}; give both")
 
 
 def _functions(
@@ -135,7 +158,7 @@ def _peers(
     results = [race(task, PEERS, plan) for task in tracked(todo, "race", lambda t: t.name)]
     batches, missing = compare_batches(rounds=rounds, seed=seed)
     if chart:
-        Path(chart).write_text(svg(results), encoding="utf-8")
+        _write(chart, svg(results))
     wrong = [f"{r.function}, {e.variant.label}" for r in results for e in report.wrong_ones(r)]
     if not as_json:
         rows = [row for r in results for row in report.rows(r, every=all_flags)]
@@ -196,10 +219,7 @@ def _instructions(
     before = read(Path(compare)) if compare else None
     found = instructions(chosen(source, names))
     if write:
-        try:
-            Path(write).write_text(found.text(), encoding="utf-8")
-        except OSError as error:
-            raise OutputError(f"cannot write {write}: {error}") from error
+        _write(write, found.text())
     if not as_json:
         titles = ("factor", "value", "before", "with Jacobians", "before")
         table(titles, instruction_rows(found, before), right=range(1, 5))
@@ -207,6 +227,13 @@ def _instructions(
         if before and before.compiler != found.compiler:
             click.echo(f"before: {before.compiler}: another compiler, whose counts differ anyway")
     return asdict(found)
+
+
+def _write(path: str, text: str) -> None:
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"cannot write {path}: {error.strerror}") from error
 
 
 def _growth(as_json: bool, *, rounds: int, **_: Any) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -16,6 +17,23 @@ if TYPE_CHECKING:
     from liegen.sources import AnyFunction
 
 T = TypeVar("T")
+
+#: Seeds of random samples.
+SEED = click.IntRange(0, 2**63 - 1)
+#: How many samples of a factor.
+COUNT = click.IntRange(1, 100_000)
+
+
+def new_file(context: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+    """A file to write, in a folder that is there: checked before anything is measured."""
+    if value is not None:
+        path = Path(value)
+        if path.is_dir():
+            raise click.BadParameter(f"{value} is a folder; give the name of a file", context, parameter)
+        if not path.parent.is_dir():
+            raise click.BadParameter(f"there is no folder {path.parent}; make it first", context, parameter)
+    return value
+
 
 source_argument = click.argument("source", required=False)
 names_option = click.option(

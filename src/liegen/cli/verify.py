@@ -11,6 +11,8 @@ import click
 
 from .accuracy import run_accuracy
 from .shared import (
+    COUNT,
+    SEED,
     Convention,
     bar,
     chosen,
@@ -52,10 +54,8 @@ LISTED = 6
 @names_option
 @groups_option
 @noise_options
-@click.option(
-    "--samples", type=click.IntRange(min=1), help="Samples a factor; every special case by default."
-)
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
+@click.option("--samples", type=COUNT, help="Samples a factor; every special case by default.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed of the samples.")
 @convention_options
 @click.option("--accuracy", is_flag=True, help="The worst errors by rotation angle, in every chart; without"
     " SOURCE and --group of the library and all groups. --samples are those of an angle.")  # fmt: skip
