@@ -14,7 +14,7 @@ LAYERS = (
     "errors", "text", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
     "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton", "define", "decorate",
     "samples", "library", "modules", "user_code", "sources", "emit",
-    "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",
+    "subprocesses", "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")

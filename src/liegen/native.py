@@ -7,17 +7,15 @@ import os
 import platform
 import shlex
 import shutil
-import subprocess
 import sys
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
-from liegen.errors import ToolError
+from .errors import ToolError
+from .subprocesses import QUICK_LIMIT, Done, run, run_all, shortened, shown
 
 COMPILERS = ("cc", "gcc", "clang")
-
 
 #: What tells one processor from another where ``-march=native`` decides, in /proc/cpuinfo.
 _PROCESSOR = (
@@ -29,12 +27,35 @@ _PROCESSOR = (
 def find_compiler() -> tuple[str, ...]:
     """The command of a C compiler: ``$CC``, else cc, gcc or clang, else Zig's; empty where there is none.
 
-    Zig's is ``zig cc``, or ``python -m ziglang cc`` where the package ziglang is installed.
+    Zig's is ``zig cc``, or ``python -m ziglang cc`` where the package ziglang is installed. Raises ToolError
+    where ``CC`` names no command.
     """
-    named = tuple(shlex.split(os.environ.get("CC", "")))
-    if named and shutil.which(named[0]):
-        return named
-    return next(((name,) for name in COMPILERS if shutil.which(name)), _zig())
+    named = named_command("CC")
+    return named or next(((name,) for name in COMPILERS if shutil.which(name)), _zig())
+
+
+def named_command(variable: str) -> tuple[str, ...]:
+    """The command in an environment variable, empty where it is unset or blank.
+
+    Raises ToolError for one that cannot be split into words, or whose first word is no program.
+    """
+    text = os.environ.get(variable, "")
+    cure = f"correct {variable}, or unset it to let liegen look for a compiler"
+    try:
+        words = tuple(shlex.split(text))
+    except ValueError as error:
+        raise ToolError(f"{variable}={shortened(text, 100)}: {error}; {cure}") from None
+    if words and not shutil.which(words[0]):
+        raise ToolError(f"{variable}={shortened(text, 100)}: no program of that name was found; {cure}")
+    return words
+
+
+def required_compiler() -> tuple[str, ...]:
+    """As :func:`find_compiler`; raises ToolError where there is none."""
+    command = find_compiler()
+    if not command:
+        raise ToolError("no C compiler was found; install one, or name it in the environment variable CC")
+    return command
 
 
 def _zig() -> tuple[str, ...]:
@@ -45,12 +66,8 @@ def _zig() -> tuple[str, ...]:
 
 @cache
 def compiler_version(command: tuple[str, ...]) -> str:
-    """What the compiler says of itself; empty where it does not."""
-    try:
-        done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
-    except OSError:
-        return ""
-    return done.stdout
+    """What the compiler says of itself; empty where it says nothing. Raises ToolError where it hangs."""
+    return run([*command, "--version"], limit=QUICK_LIMIT).out
 
 
 @cache
@@ -70,8 +87,7 @@ def _brand() -> str:
     tool = shutil.which("sysctl")
     if not tool:
         return ""
-    command = [tool, "-n", "machdep.cpu.brand_string"]
-    return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
+    return run([tool, "-n", "machdep.cpu.brand_string"], limit=QUICK_LIMIT).out.strip()
 
 
 def cores() -> int:
@@ -80,28 +96,38 @@ def cores() -> int:
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
-def compile_shared(sources: Sequence[Path], library: Path, flags: Sequence[str]) -> None:
+def compile_shared(
+    sources: Sequence[Path], library: Path, flags: Sequence[str], *, what: str = "compiling C"
+) -> None:
     """Compile C files, side by side on all cores, to one shared object; objects stay in its folder.
 
-    Raises ToolError without a compiler, and with the compiler's own words where it refuses.
+    A terminal is told ``what`` takes longer than 2 s. Raises ToolError without a compiler, with its own words
+    where it refuses, where it runs too long, and where it leaves no shared object.
     """
-    command = find_compiler()
-    if not command:
-        raise ToolError("no C compiler was found; install one, or name it in the environment variable CC")
+    command = required_compiler()
     objects = [library.parent / f"{path.name}.o" for path in sources]
     jobs = [
-        [*flags, "-fPIC", "-c", str(source), "-o", str(made)]
+        [*command, *flags, "-fPIC", "-c", str(source), "-o", str(made)]
         for source, made in zip(sources, objects, strict=True)
     ]
-    with ThreadPoolExecutor(cores()) as pool:
-        list(pool.map(partial(_run, command), jobs))
-    _run(command, [*flags, "-shared", "-o", str(library), *map(str, objects), "-lm"])
+    for done in run_all(jobs, what=what, at_once=cores()):
+        _check(command, done)
+    _check_made(command, objects)
+    linked = [*command, *flags, "-shared", "-o", str(library), *map(str, objects), "-lm"]
+    _check(command, run(linked, what=what))
+    _check_made(command, [library])
 
 
-def _run(command: Sequence[str], arguments: Sequence[str]) -> None:
-    done = subprocess.run([*command, *arguments], capture_output=True, text=True, check=False)
-    if done.returncode:
+def _check(command: Sequence[str], done: Done) -> None:
+    if done.failed:
         raise ToolError(
-            f"{' '.join(command)} does not compile the C (set CC to use another compiler):\n"
-            f"{done.stderr.strip()[:4000]}"
+            f"{shown(command)} does not compile the C: {done.reason} (set CC to use another compiler)"
         )
+
+
+def _check_made(command: Sequence[str], files: Sequence[Path]) -> None:
+    for file in files:
+        if not file.is_file() or not file.stat().st_size:
+            raise ToolError(
+                f"{shown(command)} reports no error but writes nothing, so it is no C compiler; set CC to one"
+            )

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-import os
-import shlex
 import shutil
-import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.emit.templates import lay_out
-from liegen.errors import ToolError
-from liegen.native import find_compiler
+from liegen.native import compiler_version as native_version
+from liegen.native import find_compiler, named_command, required_compiler
+from liegen.subprocesses import run
 
 from .variant import AbsentError, Flags, Task, Variant, offsets
 
@@ -79,10 +77,8 @@ def _row_major(task: Task, found: Array) -> Array:
 
 def find_cpp_compiler() -> tuple[str, ...]:
     """The command of a C++ compiler: ``$CXX``, else c++, g++ or clang++; empty where there is none."""
-    named = tuple(shlex.split(os.environ.get("CXX", "")))
-    if named and shutil.which(named[0]):
-        return named
-    return next(((name,) for name in CPP_COMPILERS if shutil.which(name)), ())
+    named = named_command("CXX")
+    return named or next(((name,) for name in CPP_COMPILERS if shutil.which(name)), ())
 
 
 def load(task: Task, variant: Variant, flags: Flags, folder: Path) -> Loaded:
@@ -123,16 +119,12 @@ def _object(folder: Path, name: str, flags: Sequence[str]) -> Path:
 
 
 def _compiled(command: Sequence[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        lines = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
-        raise AbsentError(f"{Path(command[0]).name} refused it: {lines[0].strip()}")
+    done = run(command, what="compiling for the benchmark")
+    if done.failed:
+        raise AbsentError(f"{Path(command[0]).name} refused it: {done.reason}")
 
 
 def compiler_version() -> str:
     """The first line of ``cc --version``. Raises ToolError without a compiler."""
-    command = find_compiler()
-    if not command:
-        raise ToolError("no C compiler was found; install one, or name it in the environment variable CC")
-    done = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False)
-    return done.stdout.splitlines()[0] if done.stdout else command[0]
+    command = required_compiler()
+    return native_version(command).partition("\n")[0] or command[0]

@@ -7,11 +7,9 @@ branch, on the inputs, which are drawn from a fixed seed. All but these are writ
 from __future__ import annotations
 
 import json
-import os
 import platform
 import re
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,8 +22,9 @@ from liegen.emit import render
 from liegen.emit.c_target import value_name
 from liegen.emit.templates import lay_out
 from liegen.errors import OutputError, ToolError
-from liegen.native import find_compiler
+from liegen.native import required_compiler
 from liegen.program import Program
+from liegen.subprocesses import run, shown
 
 from . import draws, ours
 from .build import compiler_version
@@ -104,7 +103,8 @@ def instructions(functions: Sequence[AnyFunction]) -> Instructions:
         kept["main.c"] = lay_out("bench/count.c.j2", {"calls": list(calls.values())})
         for file, text in kept.items():
             (folder / file).write_text(text, encoding="utf-8")
-        _run([*find_compiler(), *FLAGS, "-o", "main", *(f for f in kept if f.endswith(".c")), "-lm"], folder)
+        sources = [file for file in kept if file.endswith(".c")]
+        _run([*required_compiler(), *FLAGS, "-o", "main", *sources, "-lm"], folder)
         tool = ["valgrind", "--tool=callgrind", "--callgrind-out-file=counts", "--compress-strings=no"]
         # without lazy binding: the first call of a function would also find it
         _run([*tool, "--compress-pos=no", "./main"], folder, {"LD_BIND_NOW": "1"})
@@ -133,12 +133,9 @@ def _call(function: AnyFunction, symbol: str, program: Program) -> Call:
 
 
 def _run(command: Sequence[str], folder: Path, environment: Mapping[str, str] | None = None) -> None:
-    done = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, check=False,
-        env={**os.environ, **(environment or {})},
-    )  # fmt: skip
-    if done.returncode:
-        raise ToolError(f"{' '.join(command[:3])} ... failed:\n{done.stderr.strip()}")
+    done = run(command, what="counting instructions", cwd=folder, env=environment)
+    if done.failed:
+        raise ToolError(f"{shown(command[:3])} ... failed: {done.reason}")
 
 
 def calls_of_main(text: str) -> dict[str, int]:

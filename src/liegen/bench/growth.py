@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from liegen.define import Function
 from liegen.manifolds import R3, SE3
 from liegen.manifolds.functions import sin
 from liegen.manifolds.vector import stack
+from liegen.subprocesses import run
 from liegen.trace import Signature
 
 from . import ours
@@ -126,8 +126,7 @@ def cold_starts(rounds: int) -> tuple[ColdStart, ...]:
     for _ in range(rounds):
         for what, code in COLD.items():
             start = _of_children()
-            done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
-            if not done.returncode:
+            if not run([sys.executable, "-c", code]).failed:
                 seconds[what].append(_of_children() - start)
     return tuple(ColdStart(what, min(times) if times else None) for what, times in seconds.items())
 

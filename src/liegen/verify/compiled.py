@@ -46,7 +46,7 @@ def compile_c(sources: Path, folder: Path) -> tuple[Path | None, str]:
     if not command:
         return None, ""
     library = folder / "liegen_verified.so"
-    compile_shared(sorted(sources.glob("*.c")), library, FLAGS)
+    compile_shared(sorted(sources.glob("*.c")), library, FLAGS, what="compiling the C to verify")
     return library, Path(command[0]).name
 
 
