@@ -19,9 +19,12 @@ from typing import Any, NoReturn, TextIO
 import numpy as np
 
 from liegen.errors import LiegenError, Site, SourceError
+from liegen.text import printable
 from liegen.trace import unknown_annotation
 
 _STREAMS = ("stdin", "stdout", "stderr")
+#: Characters of an error's text that are shown.
+LONGEST = 500
 #: What ends a program without an exception.
 _EXITS = ("_exit", "abort")
 
@@ -97,7 +100,7 @@ def in_one_line(error: BaseException) -> str:
         return f"cannot import {error.name}; install it, or run liegen where it is installed"
     if isinstance(error, SystemExit):
         return 'it ends the program when imported; put that under if __name__ == "__main__":'
-    text = " ".join(_text(error).split())
+    text = printable(" ".join(_text(error).split()), LONGEST)
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 

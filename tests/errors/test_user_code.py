@@ -25,6 +25,8 @@ RAISES = {
         "class Sly(Exception):\n    def __str__(self):\n        raise SystemExit(0)\n\n\nraise Sly",
         ["factors.py:6", "Sly", "cannot be shown"],
     ),
+    "text of a million characters": ("raise ValueError('a' * 10**6)", ["ValueError: aaa", "more characters"]),
+    "terminal escapes": (r"raise ValueError('\x1b[2Jgone\x07')", [r"\x1b[2Jgone\x07"]),
     "endless recursion": ("def f():\n    return f()\n\n\nf()", ["factors.py:2", "RecursionError"]),
     "not UTF-8": (b"name = '\xff'", ["factors.py", "syntax error", "utf-8"]),
     "null byte": ("name = '\0'", ["factors.py", "null bytes"]),
@@ -60,6 +62,7 @@ def test_what_a_file_raises_is_one_line(name, command, tmp_path, monkeypatch):
     assert done.exit_code == 2, done.output
     assert done.stderr.count("\n") == 1
     assert "Traceback" not in done.stderr
+    assert len(done.stderr) < 1000
     for words in says:
         assert words in done.stderr
     assert not (tmp_path / "out").exists()
@@ -92,6 +95,27 @@ def test_a_file_may_have_the_name_of_a_package(name, tmp_path):
     command = [sys.executable, "-m", "liegen.__main__", "generate", source, "-o", output]
     done = subprocess.run(command, cwd=tmp_path.parent, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("end", ["raise SystemExit(0)", "raise GeneratorExit", "raise BaseException('over')"])
+def test_a_sampler_that_ends_the_program(end, tmp_path):
+    (tmp_path / "factors.py").write_text(
+        f"from liegen import R3, factor\n\n\ndef sample(draw, case):\n    {end}\n\n\n"
+        "@factor(sample=sample)\ndef pull(x: R3, *, z: R3):\n    return x - z\n"
+    )
+    done = CliRunner().invoke(app, ["verify", str(tmp_path / "factors.py")])
+    assert done.exit_code in (2, 3)
+    assert "Traceback" not in done.stderr
+    assert done.stderr.startswith("Error: ")
+
+
+def test_the_current_folder_is_removed(tmp_path):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    command = f"rmdir {gone}; exec {sys.executable} -m liegen.__main__ list"
+    done = subprocess.run(["sh", "-c", command], cwd=gone, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr == "Error: the current folder does not exist any more; change to another one\n"
 
 
 @pytest.mark.parametrize("end", ["import sys\nsys.exit(0)", "import os\nos._exit(0)", "raise GeneratorExit"])

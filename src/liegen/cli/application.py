@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import Any
 
 import click
@@ -41,6 +42,7 @@ class App(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command."""
         debug = bool(ctx.params.get("debug") or os.environ.get(DEBUG))
+        _need_folder()
         try:
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
@@ -51,7 +53,11 @@ class App(click.Group):
             if debug:
                 raise
             raise Refused(printable(error)) from None
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except (SystemExit, GeneratorExit) as error:  # of a user's code: liegen ends by click's Exit
+            raise Refused(f"code of the factors ended the program ({type(error).__name__})") from None
+        except BaseException as error:
             if debug:
                 raise
             text = " ".join(f"{type(error).__name__}: {error}".split())
@@ -59,6 +65,14 @@ class App(click.Group):
             raise Internal(
                 f"liegen itself failed: {printable(text)}\nSee the traceback with: {again}"
             ) from None
+
+
+def _need_folder() -> None:
+    """Raise Refused where the current folder was removed: no relative path means anything there."""
+    try:
+        Path.cwd()
+    except OSError:
+        raise Refused("the current folder does not exist any more; change to another one") from None
 
 
 @click.group(cls=App, context_settings={"help_option_names": ["-h", "--help"]})

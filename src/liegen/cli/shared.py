@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from liegen.text import one_line, printable
+
+from .tables import table as table
 
 if TYPE_CHECKING:
     from liegen.sources import AnyFunction
@@ -149,29 +151,6 @@ def count(n: int, noun: str) -> str:
 def say(text: str = "", *, nl: bool = True) -> None:
     """Print text that may hold what users wrote: a terminal gets no control characters."""
     click.echo(printable(text), nl=nl)
-
-
-def table(titles: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collection[int] = ()) -> None:
-    """Print a table: ruled on a terminal, plain columns anywhere else."""
-    content = [[one_line(cell) for cell in row] for row in rows]
-    if sys.stdout.isatty():
-        from rich.box import SIMPLE_HEAD
-        from rich.console import Console
-        from rich.table import Table
-        from rich.text import Text
-
-        ruled = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
-        for k, title in enumerate(titles):
-            ruled.add_column(title, justify="right" if k in right else "left", no_wrap=k == 0)
-        for row in content:
-            ruled.add_row(*(Text(cell) for cell in row))
-        Console().print(ruled)
-        return
-    widths = [max(len(row[k]) for row in [titles, *content]) for k in range(len(titles))]
-    for row in [titles, *content]:
-        sized = enumerate(zip(row, widths, strict=True))
-        cells = [cell.rjust(w) if k in right else cell.ljust(w) for k, (cell, w) in sized]
-        say("  ".join(cells).rstrip())
 
 
 def tracked(items: Sequence[T], what: str, label: Callable[[T], str]) -> Iterator[T]:
