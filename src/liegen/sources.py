@@ -67,7 +67,7 @@ def select(functions: Sequence[AnyFunction], names: Iterable[str]) -> tuple[AnyF
     known = [f.name for f in functions]
     for name in wanted:
         if name not in known:
-            near = difflib.get_close_matches(name, known, 3) or [k for k in known if name in k]
+            near = difflib.get_close_matches(name.lower(), known, 3) or [k for k in known if name in k]
             hint = f"did you mean {' or '.join(near)}? " if near else ""
             raise SourceError(f"there is no factor {name!r}; {hint}there are: {', '.join(known)}")
     return tuple(f for f in functions if not wanted or f.name in wanted)
@@ -81,15 +81,23 @@ def _is_file(source: str) -> bool:
     return source.endswith(".py") or "/" in source or "\\" in source or Path(source).is_file()
 
 
+_GIVE = "give a Python file with factors, or a dotted module"
+
+
+def _refuse_folder(name: str) -> None:
+    if name and Path(name).is_dir():
+        raise SourceError(f"{name} is a folder; {_GIVE}")
+
+
 def _import_file(path: Path) -> tuple[ModuleType, ast.Module]:
     """Run a file as a module under a name of its own, so that it hides no other module.
 
     Its folder comes first on ``sys.path`` while the file runs, and last afterwards: a neighbour with the name
     of a package does not hide what liegen itself still has to load.
     """
+    _refuse_folder(str(path))
     if not path.is_file():
-        what = "is a folder" if path.is_dir() else "does not exist"
-        raise SourceError(f"{path} {what}; give a Python file with factors, or a dotted module")
+        raise SourceError(f"{path} does not exist; {_GIVE}")
     place = path.resolve()
     key = hashlib.sha256(os.fsencode(place)).hexdigest()[:8]
     module = ModuleType(f"_liegen_{place.stem}_{key}")
@@ -122,6 +130,7 @@ def _first_on_path(folder: str) -> Generator[None]:
 def _import_module(name: str) -> tuple[ModuleType, ast.Module]:
     """Import a dotted module as ``python -m`` would: the current folder counts."""
     if not all(part.isidentifier() for part in name.split(".")):
+        _refuse_folder(name)
         raise SourceError(f"{name!r} is neither a Python file nor a dotted module")
     with _first_on_path(str(Path.cwd())):
         return _imported(name)
@@ -129,6 +138,8 @@ def _import_module(name: str) -> tuple[ModuleType, ast.Module]:
 
 def _imported(name: str) -> tuple[ModuleType, ast.Module]:
     spec: Any = _spec(name)
+    if spec is None or spec.origin is None:
+        _refuse_folder(name)
     if spec is None:
         file = Path(*name.split(".")).with_suffix(".py")
         hint = f"; did you mean the file {file}?" if file.is_file() else "; a file ends in .py"

@@ -171,7 +171,7 @@ def test_foreign_files_are_left_untouched(source, tmp_path):
     ("arguments", "says"),
     [
         (["generate", "nowhere.py", "-o", "out"], "nowhere.py does not exist"),
-        (["generate", ".", "-o", "out"], "is neither a Python file nor a dotted module"),
+        (["generate", ".", "-o", "out"], ". is a folder; give a Python file with factors"),
         (["generate", "not.there", "-o", "out"], "there is no module 'not.there'"),
         (["generate", "robot", "-o", "out", "-f", "nothing"], "there are: lever_arm_range, first_entries"),
         (["generate", "robot.py", "-f", "first_entry", "-o", "out"], "did you mean first_entries?"),

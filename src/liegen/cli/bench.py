@@ -12,7 +12,7 @@ import click
 
 from liegen.errors import OutputError, ToolError
 
-from .shared import SEED, chosen, count, names_option, new_file, source_argument, table, tracked
+from .shared import SEED, chosen, count, names_option, new_file, old_file, source_argument, table, tracked
 
 if TYPE_CHECKING:
     from liegen.sources import AnyFunction
@@ -28,7 +28,9 @@ OPTIONS = {"chart": "peers", "all_flags": "peers", "compare": "instructions", "w
 @source_argument
 @names_option
 @click.option("--peers", is_flag=True, help="Beside the same functions of wrenfold, SymForce, Ceres, CasADi.")
-@click.option("--graph", metavar="FILE", help="Linearise and solve a g2o file of SE(3) beside GTSAM.")
+@click.option(
+    "--graph", metavar="FILE", callback=old_file, help="Linearise and solve a g2o file of SE(3) beside GTSAM."
+)
 @click.option("--instructions", is_flag=True, help="Count the instructions of each call with valgrind.")
 @click.option("--growth", is_flag=True, help="Time code generation: cold starts, chains, wide residuals.")
 @click.option(

@@ -19,6 +19,7 @@ from .shared import (
     convention_options,
     groups_option,
     names_option,
+    new_folder,
     noise_options,
     say,
     source_argument,
@@ -98,7 +99,7 @@ def requested(given: Mapping[str, Any]) -> Request:
         source=source,
         names=tuple(dict.fromkeys(given["names"])),
         targets=tuple(t for t in TARGETS if not given["targets"] or t in given["targets"]),
-        package=given["package"] or default_package(source, groups),
+        package=default_package(source, groups) if given["package"] is None else given["package"],
         groups=groups,
         convention=Convention(given["chart"], given["layout"], given["normalise"]),
         **{name: given[name] for name in ("major", "scalar", "noise", "loss", "mode", "gauss_newton")},
@@ -146,7 +147,10 @@ def _row(kernel: Kernel) -> tuple[str, str, str]:
 @click.option(
     "-t", "--target", "targets", multiple=True, type=click.Choice(TARGETS), help="Language; both by default."
 )
-@click.option("-o", "--output", required=True, metavar="DIR", help="Folder to write to; made if need be.")
+@click.option(
+    "-o", "--output", required=True, metavar="DIR", callback=new_folder,
+    help="Folder to write to; made if need be.",
+)  # fmt: skip
 @click.option(
     "--package", metavar="NAME", help="Name of the Python package and prefix of the C functions."
     " Default: liegen_factors for the library, liegen_groups for groups, STEM_gen for a file STEM.py."

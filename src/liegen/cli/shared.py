@@ -37,6 +37,23 @@ def new_file(context: click.Context, parameter: click.Parameter, value: str | No
     return value
 
 
+def old_file(context: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+    """A file to read."""
+    if value is not None and not Path(value).is_file():
+        what = "is a folder" if value and Path(value).is_dir() else "does not exist"
+        raise click.BadParameter(f"{value or 'the file'} {what}; give the name of a file", context, parameter)
+    return value
+
+
+def new_folder(context: click.Context, parameter: click.Parameter, value: str) -> str:
+    """A folder to write to."""
+    if not value:
+        raise click.BadParameter(
+            "the name of the output folder is empty; '.' is this folder", context, parameter
+        )
+    return value
+
+
 source_argument = click.argument("source", required=False)
 names_option = click.option(
     "-f", "--factor", "names", multiple=True, metavar="NAME", help="Only this factor; may be repeated."
