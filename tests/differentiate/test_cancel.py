@@ -81,6 +81,29 @@ def test_rotations_do_not_pass_what_mixes_axes():
     assert len(cancelled((turn(X), mixing, turn(X, inverse=True)), KNOWN)) == 3
 
 
+def test_rotations_do_not_pass_a_sum_of_parts():
+    """The rows (I, I) add two parts, which turn by themselves."""
+    both = tuple(tuple(int(j % 3 == i) for j in range(6)) for i in range(3))
+    chain = (*R.turned(X[:4]), both, turn(X, inverse=True))
+    short = cancelled(chain, KNOWN)
+    assert len(short) == len(chain)
+    np.testing.assert_allclose(number(short), number(chain), atol=1e-14)
+
+
+def test_rotations_pass_a_lever_of_their_own_element_alone():
+    """Of another pose than the lever's, they stay behind the lever."""
+    chain = (*R.turned(X[:4]), *LEVER, turn(Y, inverse=True))
+    short = cancelled(chain, KNOWN)
+    assert len(short) == len(chain)
+    np.testing.assert_allclose(number(short), number(chain), atol=1e-14)
+
+
+def test_rotations_that_do_not_cancel_do_not_pass():
+    order = (*eye(6)[3:], *eye(6)[:3])
+    chain = (turn(X), order, turn(Y))
+    assert cancelled(chain, KNOWN) == chain
+
+
 @pytest.mark.parametrize("name", PRESETS)
 def test_no_preset_costs_more_than_the_default(name):
     for f in (between_se3, prior_se3, range_se3_r3):

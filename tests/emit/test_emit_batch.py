@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -14,8 +15,10 @@ from batch_tools import BUILDS, LAYOUTS, PACKED, VARIANTS, Variant, built, call_
 from emit_kernels import bearing_range, examples
 from emit_tools import call_c, samples
 
+from liegen.emit.c_block import without_chosen_conditions
 from liegen.kernel import Kernel
-from liegen.program import Program
+from liegen.program import Port, Program
+from liegen.program.rewrite import Builder
 
 N = 19
 KERNELS = pytest.mark.parametrize("kernel", examples(), ids=lambda k: k.name)
@@ -155,3 +158,18 @@ def test_status_may_be_null(demo: Demo) -> None:
     assert code != 0
     assert 0 < np.count_nonzero(status) < N
     assert demo.batch(kernel, values, N, with_status=False)[0] == code
+
+
+@pytest.mark.parametrize("below", [False, True])
+def test_a_choice_between_conditions_is_the_same_without_select(below):
+    """Where lanes are chosen by lanes, the arms are numbers: and, or, not choose between conditions."""
+    b = Builder()
+    x, y, z = (b.emit("input", (), float(k)) for k in range(3))
+    one, two, which = (b.emit("lt", pair) for pair in ((x, y), (y, z), (x, z) if below else (z, x)))
+    chosen = b.emit("select", (which, one, two))
+    results = ((b.emit("select", (chosen, x, z)),),)
+    program = Program("chosen", (Port("p", (3,)),), (Port("r", (1,)),), tuple(b.code), results)
+    changed = without_chosen_conditions(program.validate()).validate()
+    assert [ins.op for ins in changed.code].count("select") == 1
+    for p in itertools.permutations((1.0, 2.0, 3.0)):
+        assert changed.evaluate({"p": p})["r"] == program.evaluate({"p": p})["r"]
