@@ -74,6 +74,7 @@ def explanation(function: AnyFunction) -> str:
     lines += _section("Jacobians", kernel.jacobian_formulas)
     lines += _section("Noise and loss", kernel.noise)
     lines += _section("Frames", function.frames.lines)
+    lines += _section("Names read as frames", function.frames.names)
     lines += _section("Where", [*legend(kernel.jacobian_formulas), *_notes(function.plain)])
     lines += _section("Conventions", kernel.conventions)
     counted = "Operations with Jacobians" if kernel.variables else "Operations"

@@ -167,7 +167,7 @@ REJECTED = {
         "the outer frame of T_AB is A, the frame of p_B is B",
         "T_AB.transform_from(p_B)",
     ),
-    "T_AB @ p_C + 0 * (T_BC @ p_C)": (
+    "T_AB @ p_C + 0 * (T_AB @ T_BC @ p_C)": (
         "the inner frame of T_AB is B, the frame of p_C is C",
         "T_BC.transform_from(p_C)",
     ),
@@ -218,7 +218,7 @@ REJECTED = {
         "R_AB.unrotate(v_A)",
     ),
     "R_AB.matrix().T @ v_B": ("the outer frame of R_AB is A, the frame of v_B is B", "R_AB @ v_B"),
-    "R_AB.matrix() @ R_CB.matrix() @ v_B": (
+    "R_AB.matrix() @ R_CB.matrix() @ p_C": (
         "the inner frame of R_AB is B, the outer frame of R_CB is C",
         "R_AB @ R_CB.inverse()",
     ),

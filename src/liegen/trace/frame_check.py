@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -21,11 +21,12 @@ from .frame_declared import is_map, pieces
 from .frame_fit import leaves, misfit
 from .frame_names import Kind
 from .frame_products import by_part, framed, own_frames, unknown
+from .frame_repair import Trial
 from .frame_report import FrameReport
 from .frame_rules import rule
 from .frame_step import HATCH, Step
 from .frame_terms import Frame, Framed, Solver, Sought, made_of
-from .frame_text import lines
+from .frame_text import lines, names_read
 from .graph import Call, Graph, Parameter, topological
 from .notation import ATOM, Text
 
@@ -40,14 +41,21 @@ def check_frames(graph: Graph, charts: Charts = OWN) -> FrameReport:
     Raises DefinitionError, with the line and the likely repair, where declared frames do not fit. Values
     without declared frames fit anything.
     """
-    found = _Check(graph, Solver(), {p.node: framed(p, graph.parameters) for p in graph.parameters})
+    found = _checked(graph, mend=True)
+    _coincide_at_zero(found)
+    return _report(found, charts)
+
+
+def _checked(graph: Graph, *, mend: bool = False) -> _Check:
+    """The frames of all values. ``mend``: errors propose what would fit."""
+    values = {p.node: framed(p, graph.parameters) for p in graph.parameters}
+    found = _Check(graph, Solver(), values, mend)
     for node in graph.nodes():
         found.add(node, node)
     for call in graph.calls:
         if call.checked:
             _check_call(call, found)
-    _coincide_at_zero(found)
-    return _report(found, charts)
+    return found
 
 
 @dataclass(frozen=True)
@@ -57,6 +65,7 @@ class _Check:
     graph: Graph
     solver: Solver
     values: dict[Node, Framed]
+    mend: bool
 
     @cached_property
     def inside(self) -> _Inside:
@@ -97,9 +106,12 @@ class _Check:
 
         def route(k: int, kind: Kind, to: Frame) -> str | None:
             way = self.solver.name(operands[k].outer), self.solver.name(to)
-            return _route(self.graph.parameters, node.operands[k].manifold, say()[k], way, kind)
+            ways = _routes(self.graph.parameters, node.operands[k].manifold, f"{{{k}}}", way, kind)
+            found = next((text for text in ways if self.mend and trial.operand(k, text)), None)
+            return found and found.format(*say())
 
-        return Step(node, operands, self.solver, say, refuse, route)
+        trial = Trial(self.graph, node, _checked)
+        return Step(node, operands, self.solver, say, refuse, route, lambda t: self.mend and trial.whole(t))
 
 
 @dataclass(frozen=True)
@@ -146,14 +158,14 @@ def _receiver(text: Text) -> str:
     return text.text if text.strength >= _DOTS.strength else f"({text.text})"
 
 
-def _route(
+def _routes(
     parameters: Iterable[Parameter],
     moved: type[Value],
     text: str,
     way: tuple[str | None, str | None],
     kind: Kind,
-) -> str | None:
-    """How a declared pose or rotation takes a vector from one frame to the other."""
+) -> Iterator[str]:
+    """How declared poses and rotations take a vector from one frame to the other."""
     free = kind in (Kind.FREE, Kind.DIFFERENCE, Kind.TANGENT)
     for p in chain.from_iterable(pieces(a.name, a.manifold, a.frames) for a in parameters):
         rotation = issubclass(p.manifold, Rotation)
@@ -165,10 +177,9 @@ def _route(
         turn, moves = p.path if rotation else f"{p.path}.rotation", not rotation and not free
         pose = p.path if issubclass(p.manifold, Pose | Similarity) else f"{p.path}.pose"
         if p.declared.names == way[::-1]:
-            return f"{pose}.transform_from({text})" if moves else f"{turn} @ {text}"
+            yield f"{pose}.transform_from({text})" if moves else f"{turn} @ {text}"
         if p.declared.names == way:
-            return f"{pose}.transform_to({text})" if moves else f"{turn}.unrotate({text})"
-    return None
+            yield f"{pose}.transform_to({text})" if moves else f"{turn}.unrotate({text})"
 
 
 def _check_call(call: Call, found: _Check) -> None:
@@ -220,5 +231,5 @@ def _report(found: _Check, charts: Charts) -> FrameReport:
         if (row := said(of_rows(node, values, charts.rows), node.manifold.form.dim, solver, "rows"))
     }
     declared = any(p.frames for p in graph.parameters)
-    report = FrameReport(declared, arguments, rows, columns)
+    report = FrameReport(declared, arguments, rows, columns, names_read(graph.parameters))
     return replace(report, lines=lines(graph, values, report, charts))

@@ -17,6 +17,7 @@ from liegen.manifolds.rotation import Rotation
 from liegen.manifolds.similarity import Similarity
 
 from .frame_names import Frames, Kind, read_name
+from .frame_reading import BEARING, DIRECTION, MAP, VECTOR, Reading, read
 
 #: First letter or word of the names of points, and of vectors that translations do not move.
 _POINTS = frozenset(("p", "q", "l", "t", "x", "point", "landmark", "position", "translation"))
@@ -86,16 +87,23 @@ def declared(name: str, manifold: type[Manifold], annotated: Frames | None, what
     """
     if issubclass(manifold, Product):
         return _of_product(name, manifold, annotated, what)
-    stem, tokens = read_name(name)
     counts = needed(manifold)
     if annotated is not None:
-        tokens = annotated.names
-        if tokens and len(tokens) not in counts:
-            _miscounted(manifold, tokens, counts, what)
-    if len(tokens) not in counts:
+        if annotated.names and len(annotated.names) not in counts:
+            _miscounted(manifold, annotated.names, counts, what)
+        stem, point = read_name(name)[0], annotated.point
+        return Declared(annotated.names, _kind(stem, manifold, point=point)) if annotated.names else None
+    reading = as_read(name, manifold)
+    if len(reading.names) not in counts:
         return None
-    point = annotated.point if annotated is not None else None
-    return Declared(tokens, _kind(stem, manifold, point=point))
+    return Declared(reading.names, _kind(reading.stem, manifold, point=False if reading.within else None))
+
+
+def as_read(name: str, manifold: type[Manifold]) -> Reading:
+    """What the name of a value says of its frames; nothing of a product, or of what lives in none."""
+    counts = needed(manifold)
+    kinds: Mapping[tuple[int, ...], str] = {(2, 1): BEARING, (2,): MAP, (1, 2): VECTOR, (1,): DIRECTION}
+    return read(name, kinds[counts]) if counts and not issubclass(manifold, Product) else Reading(name)
 
 
 def _miscounted(manifold: type[Manifold], names: Sequence[str], counts: Sequence[int], what: str) -> None:

@@ -1,8 +1,8 @@
 """Frames in the names of parameters: ``T_WB`` is the pose of B in W, ``p_W`` a point, ``v_W`` a free vector.
 
-A name is a stem, an underscore and tokens. A token is a capital followed by lower-case letters and digits;
-tokens stand side by side or between underscores: ``T_WB``, ``T_WB1``, ``T_WBi``, ``T_World_Cam``. Other names
-have no frames.
+A name is a stem, an underscore and tokens. A token is a capital followed by lower-case letters and digits,
+and tokens stand side by side, or it is what stands between underscores: ``T_WB``, ``T_WB1``, ``T_WBi``,
+``T_Map_BaseLink``. ``frame_reading.py`` says what is made of it, and of the names of other libraries.
 """
 
 from __future__ import annotations
@@ -49,13 +49,22 @@ def frames(*names: str, point: bool | None = None) -> Frames:
     return Frames(names, point)
 
 
-def read_name(name: str) -> tuple[str, tuple[str, ...]]:
-    """Stem and tokens of a name: ``T_WB1`` gives ``("T", ("W", "B1"))``; no tokens where it has no suffix."""
+def split_name(name: str) -> tuple[str, tuple[str, ...]]:
+    """Stem and what stands in capitals behind it: ``T_Map_BaseLink`` gives ``("T", ("Map", "BaseLink"))``."""
     segments = name.split("_")
     start = len(segments)
     while start > 1 and _TOKENS.fullmatch(segments[start - 1]):
         start -= 1
-    return "_".join(segments[:start]), tuple(t for s in segments[start:] for t in _TOKEN.findall(s))
+    return "_".join(segments[:start]), tuple(segments[start:])
+
+
+def read_name(name: str) -> tuple[str, tuple[str, ...]]:
+    """Stem and tokens of a name: ``T_WB1`` gives ``("T", ("W", "B1"))``; no tokens where it has no suffix.
+
+    Segments between underscores are tokens where there are several.
+    """
+    stem, segments = split_name(name)
+    return stem, segments if len(segments) > 1 else tuple(t for s in segments for t in _TOKEN.findall(s))
 
 
 def print_name(stem: str, tokens: tuple[str, ...]) -> str:

@@ -21,6 +21,8 @@ class FrameReport:
     rows: Mapping[str, str] = field(default_factory=dict[str, str])
     #: For each variable the frame of the columns of its Jacobians.
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
+    #: How the name of each argument was read, or why it was not.
+    names: tuple[str, ...] = ()
     #: The report as text, a line for each argument, output and Jacobian.
     lines: tuple[str, ...] = ()
 

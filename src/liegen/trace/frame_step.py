@@ -30,6 +30,8 @@ class Step:
     refuse: Callable[[str], NoReturn]
     #: (operand, what it is, the frame where it is needed) -> how to move it with what is declared
     route: Callable[[int, Kind, Frame], str | None]
+    #: Whether the factor's frames fit where a text, a repair, stands for the node
+    mends: Callable[[str], bool]
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -54,12 +56,13 @@ class Step:
             f"the {_CALLED[place[1]]} of {self.texts[place[0]]} is {self.solver.name(self.at(place))}"
             for place in (a, b)
         )
-        write = next((t for p, q, t in repairs if self.solver.same(self.at(p), self.at(q))), None)
+        likely = [t for p, q, t in repairs if self.solver.same(self.at(p), self.at(q))]
+        write = next(filter(self.mends, likely), None)
         moved = None
         if write is None and b[1] == "frame":
             moved = self.route(b[0], self.kind(b[0]), self.at(a))
         self.refuse(f"{said}; {f'write {moved}' if moved else self.cure(write)}")
 
     def cure(self, repair: str | None) -> str:
-        """What to write instead."""
-        return f"write {repair.format(*self.texts)}" if repair else HATCH
+        """What to write instead, where that mends the factor."""
+        return f"write {repair.format(*self.texts)}" if repair and self.mends(repair) else HATCH

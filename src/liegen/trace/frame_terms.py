@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate
 
 from .frame_names import Kind
+
+_WORD = re.compile("[a-z_]{3,}")
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,7 @@ class Solver:
         if x == y:
             return True
         if not isinstance(x, Sought) and not isinstance(y, Sought):
-            return untyped
+            return untyped or alike(x.name, y.name)
         if not isinstance(x, Sought) or (isinstance(y, Sought) and _follows(y, x)):
             x, y = y, x
         assert isinstance(x, Sought)
@@ -122,6 +125,12 @@ class Solver:
         """Whether two frames are known to be one."""
         x, y = self.name(a), self.name(b)
         return x is not None and x == y
+
+
+def alike(a: str, b: str) -> bool:
+    """Whether two names may mean one frame: ``w`` and ``W``, ``W`` and ``world``; never ``B`` and ``B1``."""
+    short, long = sorted((a.casefold(), b.casefold()), key=len)
+    return short == long or (len(short) == 1 and long.startswith(short) and _WORD.fullmatch(long) is not None)
 
 
 def vector(frame: Frame, kind: Kind) -> Framed:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from liegen.charts import form_chart
 from liegen.manifolds import S2, SO2, Leaf, Node, Product
 
 from .frame_axes import Charts, charted
-from .frame_declared import MAPS, Piece, is_map, pieces
+from .frame_declared import MAPS, Piece, as_read, is_map, pieces
 from .frame_fit import leaves
 from .frame_names import Kind
 from .frame_report import FrameReport
 from .frame_terms import Framed
-from .graph import Graph
+from .graph import Graph, Parameter
 
 
 def lines(
@@ -22,6 +22,25 @@ def lines(
     """What each argument is, then the frames of rows, noise and columns, then charts."""
     found = (*_arguments(graph, values, report), *_outputs(graph, values, report), *_columns(graph, report))
     return (*found, *_charts(graph, charts)) if found else ()
+
+
+#: What to do about a name that was not read.
+_CURE = 'declare frames as in T_WB, T_Map_BaseLink, p_W, or with Annotated[SE3, frames("W", "B")]'
+
+
+def names_read(parameters: Iterable[Parameter]) -> tuple[str, ...]:
+    """How the name of each argument was read, or why it was not; nothing of names that say nothing."""
+    found = [(p.name, _read(p)) for p in parameters]
+    told = [f"{name}: {said}" for name, said in found if said]
+    return (*told, *([_CURE] if any(said.startswith("none, ") for _, said in found) else []))
+
+
+def _read(p: Parameter) -> str:
+    reading, names = as_read(p.name, p.manifold), p.frames.names if p.frames else ()
+    if names == reading.names or issubclass(p.manifold, Product):
+        how = f" (as in {reading.as_})" if names and reading.as_ else ""
+        return f"{', '.join(names)}{how}" if names else f"none, {reading.note}" if reading.note else ""
+    return f"{', '.join(names) or 'none'} (annotated)"
 
 
 def _arguments(graph: Graph, values: Mapping[Node, Framed], report: FrameReport) -> Iterator[str]:
