@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from .trace import frames as frames
     from .trace import outputs as outputs
     from .trace import require as require
+    from .trace import singular as singular
 
 _NAMES: dict[str, tuple[str, ...]] = {
     ".charts": ("Chart",),
@@ -86,7 +87,7 @@ _NAMES: dict[str, tuple[str, ...]] = {
     ),
     ".manifolds.vector": ("norm", "stack"),
     ".runtime": ("Compiled", "NormalEquations", "SparseSolver", "compile"),
-    ".trace": ("frames", "outputs", "require"),
+    ".trace": ("frames", "outputs", "require", "singular"),
 }  # fmt: skip
 _HOME = {name: module for module, names in _NAMES.items() for name in names}
 

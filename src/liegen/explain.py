@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from liegen.charts import form_chart
@@ -14,6 +14,7 @@ from liegen.manifolds import Leaf
 from liegen.program.kinds import kinds as grouped
 from liegen.text import latex_comment
 from liegen.trace import Graph, jacobian_formulas
+from liegen.trace.formulas import texts_of
 from liegen.trace.jacobian_text import legend
 
 AnyFunction = Function[..., Any]
@@ -71,6 +72,7 @@ def explanation(function: AnyFunction) -> str:
     kernel, row = function.kernel, summary(function)
     lines = [f"{row.name}({row.arguments}) -> {row.results}", *_indented(kernel.doc.strip().splitlines())]
     lines += _section("Formula", kernel.formula)
+    lines += _section("Singular points", _singular(function.plain))
     lines += _section("Jacobians", kernel.jacobian_formulas)
     lines += _section("Noise and loss", kernel.noise)
     lines += _section("Frames", function.frames.lines)
@@ -101,6 +103,19 @@ _KIND_NOTES = (
 def _section(title: str, lines: Iterable[str]) -> list[str]:
     inner = _indented(lines)
     return ["", f"{title}:", *inner] if inner else []
+
+
+def _singular(graph: Graph) -> list[str]:
+    """``point on the axis, where norm(...) is 0``."""
+    texts = texts_of(
+        replace(graph, outputs=tuple((s.message, n) for s in graph.singular for n in s.zeros)), {}
+    )
+    lines: list[str] = []
+    for stated in graph.singular:
+        shown = " and ".join(texts[id(n)].text for n in stated.zeros)
+        verb = "are" if len(stated.zeros) > 1 else "is"
+        lines.append(f"{stated.message}, where {shown} {verb} 0" if shown else stated.message)
+    return lines
 
 
 def _indented(lines: Iterable[str]) -> list[str]:

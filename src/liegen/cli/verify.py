@@ -182,7 +182,9 @@ def _figure(check: Check) -> str:
 def _remarks(factor: FactorReport) -> Iterable[str]:
     """What failed and where, and the notes of the rest."""
     for check in factor.checks:
-        if not check.passed:
+        if not check.passed and not check.unit:
+            yield f"\n{factor.factor}: {check.name} failed: {check.note}"
+        elif not check.passed:
             note = f" ({check.note})" if check.note else ""
             yield (
                 f"\n{factor.factor}: {check.name} failed: {check.worst:.3g} {check.unit} where "

@@ -15,6 +15,7 @@ from .graph import Call as Call
 from .graph import Domain as Domain
 from .graph import Graph as Graph
 from .graph import Parameter as Parameter
+from .graph import Singular as Singular
 from .graph import topological as topological
 from .jacobian_text import jacobian_formulas as jacobian_formulas
 from .latex_names import latex_name as latex_name
@@ -29,6 +30,7 @@ from .tracer import inlined as inlined
 from .tracer import outputs as outputs
 from .tracer import require as require
 from .tracer import signature as signature
+from .tracer import singular as singular
 from .tracer import site_of as site_of
 from .tracer import trace as trace
 from .tracer import unknown_annotation as unknown_annotation

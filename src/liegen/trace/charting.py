@@ -9,7 +9,7 @@ from liegen.charts import GTSAM, Chart, Preset, form_chart, has_charts, preset
 from liegen.errors import DefinitionError
 from liegen.manifolds import Node, Operation
 
-from .graph import Graph, Parameter
+from .graph import Graph, Parameter, topological
 
 #: A chart for everything, by name or as a value, or charts by variable.
 ChartLike = str | Chart | Preset | Mapping[str, str | Chart | Preset]
@@ -66,7 +66,8 @@ def _parameter(p: Parameter, chart: Preset) -> Parameter:
 
 def _rewritten(graph: Graph, chart: Preset) -> Graph:
     moved: dict[int, Node] = {}
-    for node in graph.nodes():
+    stated = [node for s in graph.singular for node in s.zeros]
+    for node in topological([*graph.nodes(), *stated]):
         operation, operands = _operation(node, chart), tuple(moved[id(n)] for n in node.operands)
         same = operation is node.operation and all(
             a is b for a, b in zip(operands, node.operands, strict=True)
@@ -76,6 +77,7 @@ def _rewritten(graph: Graph, chart: Preset) -> Graph:
         graph,
         outputs=tuple((name, moved[id(node)]) for name, node in graph.outputs),
         domain=tuple(replace(d, condition=moved[id(d.condition)]) for d in graph.domain),
+        singular=tuple(replace(s, zeros=tuple(moved[id(n)] for n in s.zeros)) for s in graph.singular),
         calls=(),  # of use to the check of frames only, which has been
     )
 

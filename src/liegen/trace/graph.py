@@ -42,6 +42,18 @@ class Domain:
 
 
 @dataclass(frozen=True, eq=False)
+class Singular:
+    """Points at which the formula has no derivative by its nature: where all of ``zeros`` are 0.
+
+    Without ``zeros`` it speaks of every singular point of the formula.
+    """
+
+    message: str
+    zeros: tuple[Node, ...]
+    site: Site
+
+
+@dataclass(frozen=True, eq=False)
 class Call:
     """A factor or function that was called on traced values; its body is part of the graph."""
 
@@ -67,6 +79,7 @@ class Graph:
     chart: Preset = GTSAM  # of local and retract, and of outputs on groups
     layout: Stored = OWN  # of the outputs
     normalise: bool = False  # whether arguments are brought to unit length
+    singular: tuple[Singular, ...] = ()  # nothing is computed from it
 
     @property
     def variables(self) -> tuple[Parameter, ...]:

@@ -15,13 +15,14 @@ from liegen.charts import Preset
 from liegen.errors import DefinitionError, LiegenError, Site
 from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
+from liegen.manifolds.vector import VectorLike, as_vector
 
 from .charting import ChartLike, common_chart, in_charts
 from .frame_axes import Charts
 from .frame_check import check_frames
 from .frame_declared import Declared, declared
 from .frame_names import Frames
-from .graph import Call, Domain, Graph, Parameter, topological
+from .graph import Call, Domain, Graph, Parameter, Singular, topological
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ class _Record:
     """What a run of a user's function states beside its result."""
 
     domain: list[Domain]
+    singular: list[Singular]
     calls: list[Call]
     chart: Preset
 
@@ -86,6 +88,25 @@ def require(condition: Condition | bool, message: str) -> None:
         record.domain.append(Domain(node_of(condition), message))
     elif not bool(condition):
         raise DefinitionError(f"{here()}: requirement does not hold: {message}")
+
+
+def singular(message: str, *zeros: VectorLike) -> None:
+    """State that the formula has no derivative, or no value, at some points by its nature.
+
+    With ``zeros`` (vectors or scalars) these are the points at which all of them are 0, without any they are
+    all singular points of the formula. Verification, which solves for such points, then lists them with the
+    message instead of failing there. Generated code is the same with and without it; where it should return
+    NaN and a status bit, use :func:`require`. Raises DefinitionError for a message that is no text.
+    """
+    record = _record.get()
+    if not isinstance(message, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise DefinitionError(
+            f"{here()}: singular needs a text first, got a {type(message).__name__}; "
+            'write singular("point on the axis"), or singular("point on the axis", norm(q[:2]))'
+        )
+    values = [as_vector(v, where="singular") for v in zeros]
+    if record is not None:
+        record.singular.append(Singular(message, tuple(map(node_of, values)), here()))
 
 
 def inlined(
@@ -213,7 +234,10 @@ def trace(
         except Exception as error:
             raise DefinitionError(f"{raised_at(error)}: {name}: {_explained(error)}") from None
     named = _outputs(result, f"{site}: {name}", factor=factor)
-    graph = Graph(name, doc, site, parameters, named, tuple(record.domain), tuple(record.calls))
+    graph = Graph(
+        name, doc, site, parameters, named, tuple(record.domain), tuple(record.calls),
+        singular=tuple(record.singular),
+    )  # fmt: skip
     _all_used(graph)
     charted = in_charts(graph, chart)
     charts = Charts({p.name: p.chart for p in charted.parameters}, charted.chart)
@@ -236,7 +260,7 @@ def _explained(error: Exception) -> str:
 
 @contextmanager
 def _recording(chart: Preset) -> Any:
-    record = _Record([], [], chart)
+    record = _Record([], [], [], chart)
     token = _record.set(record)
     try:
         yield record

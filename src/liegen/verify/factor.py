@@ -20,6 +20,7 @@ from .in_place import in_place
 from .normal_terms import normal_terms
 from .report import Check, FactorReport
 from .single import single
+from .singular import singular_points
 from .taylor import taylor
 from .unit_length import off_unit
 
@@ -79,6 +80,7 @@ def _checks(
             gradient(function, weighting, drawn.inside, results, branches),
             agreement(expected, results | singles),
             domain(function, drawn, computed, seed),
+            singular_points(function, drawn, computed),
             *(not_applicable(name, weighting.mode.name) for name in ("differences", "Taylor")),
             *terms,
             *floats,
@@ -88,6 +90,7 @@ def _checks(
         *accuracy(expected, results, drawn.refused, has_jacobians=bool(function.kernel.variables)),
         agreement(expected, results | singles),
         domain(function, drawn, computed, seed),
+        singular_points(function, drawn, computed),
         *(_slopes(function.graph, drawn, expected, computed, results) if function.kernel.variables else ()),
         *terms,
         *([in_place(function.kernel, place, batch(drawn.inside))] if function.kernel.in_place else []),
