@@ -12,7 +12,8 @@ SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
     "errors", "text", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty", "trace",
-    "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton", "define", "decorate",
+    "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton",
+    "arguments", "define", "decorate",
     "samples", "library", "modules", "user_code", "sources", "emit",
     "subprocesses", "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",
 )  # fmt: skip

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar
 
 import numpy as np
 
+from liegen.arguments import bound, callable_of, check_batches, coerced, known, name_of, text_of
 from liegen.errors import DefinitionError
 from liegen.layouts import OWN, storage
 from liegen.manifolds import Value
-from liegen.manifolds.node import called, here
+from liegen.manifolds.node import here
 from liegen.noise import Weighting, weighted_graph
 from liegen.noise import weighting as read_weighting
 from liegen.trace import (
@@ -22,6 +23,7 @@ from liegen.trace import (
     LayoutLike,
     Outputs,
     Signature,
+    constant,
     in_layouts,
     inlined,
     trace,
@@ -149,16 +151,11 @@ class Function(Generic[P, T]):
         return f"$$\n{function_latex(self.plain, self.weighting)}\n$$"
 
     def _bound(self, args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> dict[str, Value]:
-        free = self._free
-        positional = [s.name for s in free if s.variable] or [s.name for s in free]
-        given = dict(zip(positional, args, strict=False)) | dict(kwargs)
-        missing = [s.name for s in free if s.name not in given]
-        unknown = [k for k in given if k not in {s.name for s in free}]
-        if missing or unknown or len(args) > len(positional) or len(given) < len(args) + len(kwargs):
-            named = [s.name for s in free if s.name not in positional]
-            usage = ", ".join([*positional, *(f"{name}=" for name in named)])
-            raise DefinitionError(f"{here()}: call it as {self.name}({usage})")
-        return {s.name: self._coerced(s, given[s.name]) for s in free}
+        call = f"{here()}: {self.name}"
+        given = bound(call, self._free, args, kwargs)
+        values = {s.name: self._coerced(s, given[s.name]) for s in self._free}
+        check_batches(call, values)
+        return values
 
     def _stored(self, values: Mapping[str, Value]) -> dict[str, Any]:
         """What the kernel reads, in the layout of each argument."""
@@ -180,42 +177,15 @@ class Function(Generic[P, T]):
         return next((w.shape for w in weights if w.name == name), own.get(name, ()))
 
     def _coerced(self, s: Signature, value: Any) -> Value:
-        if not isinstance(value, Value):
-            shape = self._shape(s.name)
-            if len(shape) > 1:
-                matrix = np.asarray(value, dtype=np.float64)
-                if matrix.shape[-2:] != shape:
-                    raise DefinitionError(
-                        f"{here()}: {self.name}: argument {s.name!r}: an array of shape "
-                        f"(..., {', '.join(map(str, shape))}) is needed, this one has shape {matrix.shape}"
-                    )
-                value = matrix.reshape(*matrix.shape[:-2], -1)
-            return self._from_storage(s, value)
-        if value.form != s.manifold.form:
-            raise DefinitionError(
-                f"{here()}: {self.name}: argument {s.name!r} must be {s.manifold.form.name}, "
-                f"got {called(value)}"
-            )
-        return value
-
-    def _from_storage(self, s: Signature, array: Any) -> Value:
-        """The typed value of an array in the argument's layout."""
         layout = next((p.layout for p in self.plain.parameters if p.name == s.name), OWN)
         stored = storage(s.manifold.form, layout)
-        if stored.own:
-            return s.manifold.from_storage(array)
-        numbers = np.asarray(array, dtype=np.float64)
-        if numbers.ndim == 0 or numbers.shape[-1] != stored.size:
-            raise DefinitionError(
-                f"{here()}: {self.name}: argument {s.name!r}: an array of shape (..., {stored.size}) is "
-                f"needed ({', '.join(stored.names)}), this one has shape {numbers.shape}"
-            )
-        return s.manifold.holding(stored.read([numbers[..., k][()] for k in range(stored.size)]))
+        what = f"{here()}: {self.name}: argument {s.name!r}"
+        return coerced(what, s.manifold, stored, self._shape(s.name) or stored.shape or (stored.size,), value)
 
     def vary(
         self, *names: str, name: str = "", doc: str = "", sample: Sampler | None = None
     ) -> Function[..., T]:
-        """The same formula with the arguments ``names`` as variables."""
+        """The same formula with the arguments ``names`` as variables, which have no defaults."""
         return self._changed(names, name, doc, sample, variable=True)
 
     def fix(
@@ -229,10 +199,10 @@ class Function(Generic[P, T]):
     ) -> Function[..., T]:
         """The same formula with constants for some arguments."""
         self._known(values)
-        declared = tuple(
-            replace(s, bound=self._coerced(s, values[s.name])) if s.name in values else s
-            for s in self.declared
-        )
+        bound = {s.name: self._coerced(s, values[s.name]) for s in self.declared if s.name in values}
+        for argument, value in bound.items():
+            constant(value, f"{here()}: {self.name}: argument {argument!r}")
+        declared = tuple(replace(s, bound=bound.get(s.name, s.bound)) for s in self.declared)
         return self._copy(declared, name, doc, sample)
 
     def whitened(
@@ -258,7 +228,10 @@ class Function(Generic[P, T]):
         self, names: tuple[str, ...], name: str, doc: str, sample: Sampler | None, *, variable: bool
     ) -> Function[..., T]:
         self._known(names)
-        declared = tuple(replace(s, variable=variable) if s.name in names else s for s in self.declared)
+        declared = tuple(
+            replace(s, variable=variable, default=None if variable else s.default) if s.name in names else s
+            for s in self.declared
+        )
         if not any(s.variable and s.bound is None for s in declared):
             raise DefinitionError(f"{here()}: {self.name}: no variable is left")
         return self._copy(declared, name, doc, sample)
@@ -271,13 +244,14 @@ class Function(Generic[P, T]):
         sample: Sampler | None,
         weighting: Weighting | None = None,
     ) -> Function[..., T]:
+        what = f"{here()}: {self.name}"
         return Function(
             self.function,
             declared,
-            name or self.name,
-            doc or self.doc,
+            name_of(name, f"{what}: name=") or self.name,
+            text_of(doc, f"{what}: doc=") or self.doc,
             self.is_factor,
-            sample or self.sampler,
+            callable_of(sample, f"{what}: sample=") or self.sampler,
             self.checked,
             self._chart_of({s.name for s in declared if s.variable and s.bound is None}),
             self.in_place,
@@ -317,9 +291,4 @@ class Function(Generic[P, T]):
         return self if same else replace(self, layout=stated, normalise=unit)
 
     def _known(self, names: Any) -> None:
-        possible = [s.name for s in self.declared if s.bound is None]
-        for name in names:
-            if name not in possible:
-                raise DefinitionError(
-                    f"{here()}: {self.name} has no free argument {name!r}; it has {', '.join(possible)}"
-                )
+        known(f"{here()}: {self.name}", names, [s.name for s in self.declared if s.bound is None])

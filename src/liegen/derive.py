@@ -169,7 +169,11 @@ def lowered_outputs(
 
 def _argument(p: Parameter) -> Argument:
     form, stored = p.manifold.form, p.storage
-    return Argument(p.name, form.name, stored.names, form.dim, p.variable, shape=stored.shape)
+    given = p.default if not p.variable else None
+    default = None if given is None else tuple(float(c) for c in stored.write(given.coords))
+    return Argument(
+        p.name, form.name, stored.names, form.dim, p.variable, default=default, shape=stored.shape
+    )
 
 
 def _weight(weight: Weight) -> Argument:

@@ -35,12 +35,19 @@ class Stored:
 class Argument(Stored):
     """A parameter. ``meaning`` describes it where no manifold does.
 
-    ``named``: a call gives it by name also where there are no variables.
+    ``named``: a call gives it by name also where there are no variables. ``default``: the stored numbers
+    that stand for it where a call in Python leaves it out.
     """
 
     variable: bool
     meaning: str = ""
     named: bool = False
+    default: tuple[float, ...] | None = None
+
+    @property
+    def default_text(self) -> str:
+        """The default as a tuple of numbers in Python, of rows for a matrix; empty where there is none."""
+        return "" if self.default is None else repr(_nested(self.default, self.shape))
 
 
 @dataclass(frozen=True)
@@ -109,3 +116,10 @@ class Kernel:
     def jacobian_name(self, output: Output, variable: Argument) -> str:
         """``res_D_x``."""
         return f"{output.name}_D_{variable.name}"
+
+
+def _nested(numbers: tuple[float, ...], shape: tuple[int, ...]) -> tuple[object, ...]:
+    if len(shape) == 1:
+        return numbers
+    size = len(numbers) // shape[0]
+    return tuple(_nested(numbers[k * size : (k + 1) * size], shape[1:]) for k in range(shape[0]))

@@ -15,7 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.coefficients import tables
+from liegen.define import Function
+from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Value
+from liegen.manifolds.given import spoken
+from liegen.manifolds.node import raised_at
+from liegen.text import exception_text
+from liegen.trace import constant
 
 Sampler = Callable[["Draw", "Case"], Mapping[str, Value]]
 
@@ -87,6 +93,48 @@ class Draw:
         """A tangent vector whose rotation has the case's angle, whose translation the case's offset."""
         angle = self.uniform(0, 3.0) if case.angle is None else case.angle
         return np.array(manifold.form.draw_tangent(self, angle, case.offset))
+
+
+def sampler_of(function: Function[..., Any]) -> Sampler:
+    """What draws the arguments of a factor: its own sampler, or the default one.
+
+    What its own sampler does wrong is a DefinitionError that names the factor, the sampler and the argument.
+    """
+    manifolds: dict[str, Any] = {p.name: p.manifold for p in function.plain.parameters}
+    own = function.sampler
+    if own is None:
+        return default_sampler(manifolds)
+    name = getattr(own, "__name__", type(own).__name__)
+    what = f"{function.graph.site}: {function.name}: its sampler {name}"
+
+    def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
+        try:
+            given: Any = own(draw, case)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a user's function may raise anything
+            raise DefinitionError(
+                f"{what} raised {exception_text(error)} at {raised_at(error)}, in the case {case.name!r}"
+            ) from error
+        if not isinstance(given, Mapping):
+            raise DefinitionError(
+                f"{what} gave {spoken(given)}; it must return {{argument: value}} for {', '.join(manifolds)}"
+            )
+        values: dict[str, Any] = {**given}
+        for argument, manifold in manifolds.items():
+            value = values.get(argument)
+            if not isinstance(value, Value) or value.form != manifold.form:
+                shown = "nothing" if argument not in values else _shown(value)
+                needed = f"it must return a {manifold.__name__} for it"
+                raise DefinitionError(f"{what} gave {shown} for {argument!r}; {needed}")
+            constant(value, f"{what}: what it gave for {argument!r}")
+        return values
+
+    return sample
+
+
+def _shown(value: object) -> str:
+    return f"a {value.form.name}" if isinstance(value, Value) else spoken(value)
 
 
 def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:

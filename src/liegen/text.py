@@ -22,6 +22,9 @@ _LATEX = {
     "\\": r"\backslash{}", "^": r"\hat{}", "~": r"\sim{}",
 }  # fmt: skip
 
+#: Characters of an error's text that are shown.
+LONGEST = 500
+
 
 def _seen(char: str) -> str:
     if " " <= char <= "~":
@@ -50,6 +53,16 @@ def printable(text: object, limit: int | None = None) -> str:
     left_out = len(whole) - limit if limit is not None else 0
     shown = "\n".join(one_line(line) for line in whole[:limit].split("\n"))
     return f"{shown} ... ({left_out} more characters)" if left_out > 0 else shown
+
+
+def exception_text(error: BaseException) -> str:
+    """``ValueError: why`` in one line; the type alone where there is no text."""
+    try:
+        whole = str(error)
+    except BaseException:  # __str__ is the user's code too
+        whole = "(its text cannot be shown: str() of it fails)"
+    text = printable(" ".join(whole.split()), LONGEST)
+    return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
 def hash_comment(lines: Sequence[str]) -> str:

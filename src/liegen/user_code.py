@@ -19,12 +19,10 @@ from typing import Any, NoReturn, TextIO
 import numpy as np
 
 from liegen.errors import LiegenError, Site, SourceError
-from liegen.text import printable
+from liegen.text import exception_text
 from liegen.trace import unknown_annotation
 
 _STREAMS = ("stdin", "stdout", "stderr")
-#: Characters of an error's text that are shown.
-LONGEST = 500
 #: What ends a program without an exception.
 _EXITS = ("_exit", "abort")
 
@@ -100,15 +98,7 @@ def in_one_line(error: BaseException) -> str:
         return f"cannot import {error.name}; install it, or run liegen where it is installed"
     if isinstance(error, SystemExit):
         return 'it ends the program when imported; put that under if __name__ == "__main__":'
-    text = printable(" ".join(_text(error).split()), LONGEST)
-    return f"{type(error).__name__}: {text}" if text else type(error).__name__
-
-
-def _text(error: BaseException) -> str:
-    try:
-        return str(error)
-    except BaseException:  # __str__ is the user's code too
-        return "(its text cannot be shown: str() of it fails)"
+    return exception_text(error)
 
 
 def _refuse_annotation(error: NameError, site: Site, file: str) -> None:

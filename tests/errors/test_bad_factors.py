@@ -98,7 +98,7 @@ MISTAKES = {
     ),
     "array that is no vector": (
         broken("x: R3", "return x / np.eye(3)"),
-        [BODY, "broken", "(3, 3)", "vector"],
+        [BODY, "broken", "(3, 3)", "constant of a formula", "make it an argument"],
     ),
     "index out of range": (broken("x: R3", "return x[3]"), [BODY, "broken", "x (R3)", "0 to 2", "[3]"]),
     "empty slice": (broken("x: R3", "return x[5:]"), [BODY, "broken", "x (R3)", "0 to 2"]),

@@ -30,9 +30,10 @@ def storage_text(item: Stored) -> str:
 
 
 def argument_text(argument: Argument) -> str:
-    """``SE3 (qx, ..., z), variable, tangent of 6``."""
+    """``SE3 (qx, ..., z), variable, tangent of 6``; a given one with its default, if it has one."""
     role = f"variable, tangent of {argument.dim}" if argument.variable else "given"
-    return f"{storage_text(argument)}, {role}"
+    default = f", default {argument.default_text}" if argument.default_text else ""
+    return f"{storage_text(argument)}, {role}{default}"
 
 
 def jacobian_texts(kernel: Kernel) -> tuple[tuple[str, tuple[int, int], str], ...]:

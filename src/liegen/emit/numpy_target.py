@@ -140,7 +140,9 @@ def _argument(kernel: Kernel, a: Argument) -> str:
 def _interface(kernel: Kernel, program: Program, name: str, private: str, record: str) -> Interface:
     typed = [f"{a.name}: npt.ArrayLike" for a in kernel.positional]
     typed += ["*"] if kernel.keywords else []
-    typed += [f"{a.name}: npt.ArrayLike" for a in kernel.keywords]
+    typed += [
+        f"{a.name}: npt.ArrayLike" + " = " * bool(a.default_text) + a.default_text for a in kernel.keywords
+    ]
     shapes = _broken("    shapes = (", [repr(port.shape) for port in program.outputs], ")", comma=True)
     call = f'evaluate({private}, "{name}", values, shapes)'
     return Interface(

@@ -14,7 +14,9 @@ from liegen.algebra.linear import Matrix
 from liegen.errors import DefinitionError
 
 from .form import GroupForm, ManifoldForm
-from .node import Operation, Value, apply, called, here
+from .given import real_numbers
+from .node import Operation, V, Value, apply, called, here, shown_storage
+from .rn_form import RForm
 
 if TYPE_CHECKING:
     from .vector import Vector, VectorLike
@@ -35,13 +37,36 @@ def as_tangent(v: VectorLike, form: ManifoldForm, where: str) -> Vector:
     return as_vector(v, form.dim, where)
 
 
-def same_manifold(operation: str, x: Value, y: Value) -> None:
-    """Raise DefinitionError unless both values are of one manifold."""
-    if x.form != y.form:
+def as_element(operation: str, x: V, y: V | object) -> V:
+    """Coerce ``y`` to an element of the manifold of ``x``: one of its own, or stored numbers (..., n).
+
+    Raises DefinitionError for anything else.
+    """
+    if isinstance(y, Value):
+        if x.form != y.form:
+            raise DefinitionError(
+                f"{here()}: {operation} needs two elements of one manifold, got {called(x)} and {called(y)}; "
+                f"give it two of {x.form.name}"
+            )
+        return y  # pyright: ignore[reportReturnType]
+    form, what = x.form, f"{here()}: {operation} of {called(x)} needs another {x.form.name}"
+    numbers = real_numbers(y, what)
+    if numbers.ndim == 0 or numbers.shape[-1] != form.size:
+        tangent = numbers.ndim and numbers.shape[-1] == form.dim and isinstance(form, GroupForm)
+        cure = f"; {form.name}.exp makes an element of a tangent vector" if tangent else ""
         raise DefinitionError(
-            f"{here()}: {operation} needs two elements of one manifold, got {called(x)} and {called(y)}; "
-            f"give it two of {x.form.name}"
+            f"{what}, or its stored numbers (..., {form.size}) ({shown_storage(form.storage)}), "
+            f"got an array of shape {numbers.shape}{cure}"
         )
+    return type(x).from_storage(numbers)
+
+
+def composes(form: GroupForm, space: int, other: object) -> bool:
+    """Whether ``x @ other`` is a product of elements; an array is where it is too long for a point."""
+    if isinstance(other, Value):
+        return isinstance(other, Group) and not isinstance(other.form, RForm)
+    shape: tuple[int, ...] = np.shape(other) if type(other) is np.ndarray else ()
+    return shape[-1:] == (form.size,) and form.size != space
 
 
 class Manifold(Value):
@@ -50,14 +75,14 @@ class Manifold(Value):
     __slots__ = ()
 
     def retract(self, d: VectorLike) -> Self:
-        """The point that the tangent vector ``d`` at self leads to."""
+        """The point that the tangent vector ``d`` of shape (..., dim) at self leads to."""
         form = self.form
         operation = Operation("retract", type(self), form.retract, form.retract_blocks(), "{0}.retract({1})")
         return apply(operation, type(self), self, as_tangent(d, form, f"{form.name}.retract"))
 
     def local(self, other: Self) -> Vector:
         """The tangent vector at self that leads to ``other``; inverse of ``retract``."""
-        same_manifold("local", self, other)
+        other = as_element("local", self, other)
         form, result = self.form, tangent_class(self.form.dim)
         operation = Operation("local", result, form.local, form.local_blocks(), "{0}.local({1})")
         return apply(operation, result, self, other)
@@ -90,7 +115,7 @@ class Group(Manifold):
 
     def compose(self, other: Self) -> Self:
         """The product self * other."""
-        same_manifold("compose", self, other)
+        other = as_element("compose", self, other)
         operation = Operation(
             "compose", type(self), self.form.compose, self.form.compose_blocks(), "{0}.compose({1})"
         )
@@ -105,7 +130,7 @@ class Group(Manifold):
 
     def between(self, other: Self) -> Self:
         """The product self^-1 * other: ``other`` as seen from self."""
-        same_manifold("between", self, other)
+        other = as_element("between", self, other)
         operation = Operation(
             "between", type(self), self.form.between, self.form.between_blocks(), "{0}.between({1})"
         )

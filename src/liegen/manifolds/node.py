@@ -20,6 +20,7 @@ from liegen.algebra.linear import Vector as Coordinates
 from liegen.errors import DefinitionError, Site
 
 from .form import Compute, ManifoldForm, Rule
+from .given import real_numbers
 
 _PACKAGE = str(Path(__file__).resolve().parent.parent)
 _LIBRARY = str(Path(_PACKAGE) / "library")
@@ -87,15 +88,10 @@ class Value:
     def from_storage(cls, array: object) -> Self:
         """From an array of shape (..., n) of stored numbers, in the order of ``form.storage``.
 
-        Raises DefinitionError when the last dimension is not n.
+        A single number is a scalar. Raises DefinitionError when the last dimension is not n, and for what
+        holds no real numbers.
         """
-        numbers = np.asarray(array, dtype=np.float64)
-        if numbers.ndim == 0 or numbers.shape[-1] != cls.form.size:
-            raise DefinitionError(
-                f"{cls.__name__}: an array of shape (..., {cls.form.size}) is needed "
-                f"({', '.join(cls.form.storage)}), this one has shape {numbers.shape}"
-            )
-        return cls.holding([numbers[..., k][()] for k in range(cls.form.size)])
+        return from_numbers(cls, array, cls.__name__)
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"{type(self).__name__} values cannot be changed; make a new one")
@@ -158,6 +154,24 @@ class Value:
         return f"{type(self).__name__}({numbers})"
 
 
+def from_numbers(cls: type[V], array: object, what: str) -> V:
+    """A value from stored numbers (..., n). Raises DefinitionError, which begins with ``what``."""
+    size = cls.form.size
+    needed = f"{what}: an array of shape (..., {size}) is needed ({shown_storage(cls.form.storage)})"
+    numbers = real_numbers(array, needed)
+    if numbers.ndim == 0 and size == 1:
+        numbers = numbers[None]
+    if numbers.ndim == 0 or numbers.shape[-1] != size:
+        cure = "; a batch of scalars is array[:, None]" if size == 1 else ""
+        raise DefinitionError(f"{needed}, this one has shape {numbers.shape}{cure}")
+    return cls.holding([numbers[..., k][()] for k in range(size)])
+
+
+def shown_storage(names: Sequence[str]) -> str:
+    """The names of stored scalars, at most twelve of them."""
+    return ", ".join(names if len(names) <= 12 else [*names[:10], "...", names[-1]])
+
+
 def refuse(value: Value, what: str) -> NoReturn:
     """Raise the error for Python code that needs the number of a traced value."""
     raise DefinitionError(
@@ -205,18 +219,56 @@ def raised_at(error: BaseException) -> Site:
 
 
 def apply(operation: Operation, result: type[V], *operands: Value) -> V:
-    """Compute ``operation`` on numbers, or add it to the graph when any operand is traced."""
+    """Compute ``operation`` on numbers, or add it to the graph when any operand is traced.
+
+    Raises DefinitionError for batches that do not broadcast, and for a batch in a formula.
+    """
     if any(v.traced for v in operands):
         return result.holding(node=Node(operation, tuple(node_of(v) for v in operands), here()))
     with np.errstate(all="ignore"):
-        return result.holding(operation.value(*(v.coords for v in operands)))
+        try:
+            return result.holding(operation.value(*(v.coords for v in operands)))
+        except ValueError:
+            batches = [batch_of(v) for v in operands]
+            if _broadcast(batches):
+                raise
+        got = " and ".join(map(str, batches))
+        raise DefinitionError(f"{here()}: {operation.name}: leading dimensions do not broadcast: {got}")
+
+
+def has_numbers(value: Value) -> bool:
+    """Whether a value is on numbers: it stands for no node, and its scalars are those of no other backend."""
+    return not value.traced and all(
+        isinstance(c, float | int | np.ndarray | np.generic) for c in value.coords
+    )
+
+
+def batch_of(value: Value) -> tuple[int, ...]:
+    """The leading dimensions of a value on numbers; () for a single element."""
+    return np.broadcast_shapes(*(np.shape(c) for c in value.coords))
+
+
+def _broadcast(shapes: Sequence[tuple[int, ...]]) -> bool:
+    try:
+        np.broadcast_shapes(*shapes)
+    except ValueError:
+        return False
+    return True
 
 
 def node_of(value: Value) -> Node:
-    """The node that a value stands for; a constant becomes a leaf."""
+    """The node that a value stands for; a constant becomes a leaf.
+
+    Raises DefinitionError for a batch: a formula is of single elements.
+    """
     node = value._node  # pyright: ignore[reportPrivateUsage]
     if node is not None:
         return node
+    if batch_of(value):
+        raise DefinitionError(
+            f"{here()}: a constant of a formula is one {value.form.name}, this one is an array of shape "
+            f"{np.asarray(value).shape}; make it an argument, and give the batch where the factor is called"
+        )
     leaf = Leaf("constant", type(value), _no_value, None, _constant_text(value), coords=value.coords)
     return Node(leaf, (), Site("", 0))
 

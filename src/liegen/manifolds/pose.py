@@ -8,7 +8,7 @@ from liegen.algebra.linear import beside, eye, matvec, negated, stacked, sub, tr
 from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords, PoseForm
-from .group import Group, Manifold, tangent_class
+from .group import Group, Manifold, composes, tangent_class
 from .node import Operation, Value, apply, called, here
 from .rotation import Rotation
 from .vector import R1, Vector, VectorLike, as_vector, norm
@@ -132,6 +132,6 @@ class Pose(Group, Generic[Q, P, B]):
     @overload
     def __matmul__(self, other: VectorLike) -> P: ...
     def __matmul__(self, other: Any) -> Any:
-        is_pose = isinstance(other, Group) and not isinstance(other, Vector)
+        is_pose = composes(self.form, self.form.rotation.space, other)
         value: Any = other
         return self.compose(value) if is_pose else self.transform_from(value)

@@ -8,19 +8,21 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, dataclass_transform, get_args, get_origin
 
+import numpy as np
+
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.algebra.linear import eye, transpose
 from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords
 from .group import Group, Manifold, as_tangent
-from .node import Operation, Value, apply, called, here
+from .node import Operation, Value, apply, called, from_numbers, here
 from .part import part
 from .product_form import ProductForm, joined, product_form
 from .vector import Vector, VectorLike, as_vector
 
 
-@dataclass_transform(kw_only_default=True, frozen_default=True)
+@dataclass_transform(frozen_default=True)
 class Product(Group):
     """A value of named parts, each an attribute.
 
@@ -57,12 +59,20 @@ class Product(Group):
 
     if not TYPE_CHECKING:  # type checkers take the signature from the annotations
 
-        def __new__(cls, **parts: Manifold | VectorLike) -> Self:
-            """From all parts by name. Raises DefinitionError for missing, unknown and mismatched ones."""
+        def __new__(cls, *first: Manifold | VectorLike, **named: Manifold | VectorLike) -> Self:
+            """From all parts, in their order or by name.
+
+            Raises DefinitionError for missing, unknown and mismatched ones.
+            """
             names = list(cls.part_classes)
-            if parts.keys() != cls.part_classes.keys():
+            parts = {**dict(zip(names, first, strict=False)), **named}
+            whole = len(parts) == len(first) + len(named)  # none too many, none twice
+            if not whole or parts.keys() != cls.part_classes.keys():
                 usage = ", ".join(f"{name}=..." for name in names)
-                raise DefinitionError(f"{here()}: {cls.__name__}: say all its parts: {cls.__name__}({usage})")
+                raise DefinitionError(
+                    f"{here()}: {cls.__name__}: say all its parts: {cls.__name__}({usage}), "
+                    f"or in this order {cls.__name__}({', '.join(names)})"
+                )
             values = [_coerced(cls, name, parts[name]) for name in names]
             show = ", ".join(f"{name}={{{k}}}" for k, name in enumerate(names))
             operation = Operation("product", cls, _join, _columns(cls.form), f"{cls.__name__}({show})")
@@ -114,6 +124,8 @@ def _coerced(cls: type[Product], name: str, given: Any) -> Value:
     where = f"{cls.__name__}({name}=...)"
     if issubclass(kind, Vector):
         return as_vector(given, kind.form.dim, where)
+    if type(given) in (np.ndarray, list, tuple):
+        return from_numbers(kind, given, f"{here()}: {where} needs {kind.__name__}")
     if not isinstance(given, Value) or given.form != kind.form:
         shown = called(given) if isinstance(given, Value) else type(given).__name__
         raise DefinitionError(f"{here()}: {where} needs {kind.__name__}, got {shown}")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from liegen.algebra.linear import matvec, negated, transpose
 
 from .form import Blocks, Coords, RotationForm
-from .group import Group, tangent_class
+from .group import Group, composes, tangent_class
 from .node import Operation, apply, refuse
 from .vector import Vector, VectorLike, as_vector
 
@@ -73,7 +73,7 @@ class Rotation(Group, Generic[P]):
     @overload
     def __matmul__(self, other: VectorLike) -> P: ...
     def __matmul__(self, other: Any) -> Any:
-        is_rotation = isinstance(other, Group) and not isinstance(other, Vector)
+        is_rotation = composes(self.form, self.form.space, other)
         value: Any = other
         return self.compose(value) if is_rotation else self.rotate(value)
 

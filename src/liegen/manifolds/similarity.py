@@ -9,7 +9,7 @@ from liegen.algebra.linear import Vector as Coordinates
 from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords
-from .group import Group, tangent_class
+from .group import Group, composes, tangent_class
 from .groups import SO2, SO3
 from .node import Operation, Value, apply, called, here
 from .part import part
@@ -114,7 +114,7 @@ class Similarity(Group, Generic[Q, P]):
     @overload
     def __matmul__(self, other: VectorLike) -> P: ...
     def __matmul__(self, other: Any) -> Any:
-        is_group = isinstance(other, Group) and not isinstance(other, Vector)
+        is_group = composes(self.form, self.form.space, other)
         value: Any = other
         return self.compose(value) if is_group else self.transform_from(value)
 

@@ -13,6 +13,7 @@ from liegen.algebra import call
 from liegen.errors import DefinitionError
 
 from .condition import Condition
+from .given import dimension, real_numbers
 from .group import Group
 from .node import Operation, Value, apply, called, here
 from .rn_form import RForm, direction_or_zero, length
@@ -144,18 +145,23 @@ class Vector(Group):
 
 
 class R(Vector):
-    """Base of the vector spaces: ``class R12(R, dim=12)`` makes the annotation of larger vectors."""
+    """Base of the vector spaces: ``class R12(R, dim=12)`` makes the annotation of larger vectors.
+
+    ``R(12)`` is that class too: an annotation, or ``R12 = R(12)``.
+    """
 
     __slots__ = ()
 
     def __init_subclass__(cls, dim: int = 0, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        if dim < 1:
-            raise DefinitionError(f"{cls.__name__}: say the dimension, class {cls.__name__}(R, dim=12)")
-        cls.form = rform(dim)
+        cls.form = rform(dimension(dim, cls.__name__, f"class {cls.__name__}(R, dim=12)"))
 
     def __new__(cls, *entries: float | Vector) -> Self:
         """From its entries, numbers or scalars: ``R3(1, 2, x[0])``."""
+        if cls is R:
+            size: Any = entries[0] if len(entries) == 1 else entries
+            sized: Any = vector_class(dimension(size, "R", "R(12), or R3(1, 2, 3) for a vector of numbers"))
+            return sized
         v = stack(*entries)
         if len(v) != cls.form.dim:
             raise DefinitionError(f"{here()}: {cls.__name__} needs {cls.form.dim} entries, got {len(v)}")
@@ -228,28 +234,27 @@ _NAMED: tuple[type[R], ...] = (R1, R2, R3, R4, R5, R6, R7, R8, R9)
 
 @cache
 def vector_class(n: int) -> type[Vector]:
-    """``R1`` to ``R9``, or a class made for a larger n."""
+    """``R1`` to ``R9``, or a class made for a larger n. Raises DefinitionError where n is too large."""
     return _NAMED[n - 1] if n <= len(_NAMED) else type(f"R{n}", (R,), {"__slots__": ()}, dim=n)
 
 
 def as_vector(v: Any, dim: int | None = None, where: str = "this operation") -> Vector:
-    """Coerce numbers, sequences and arrays to a constant vector.
+    """Coerce numbers, sequences and arrays (..., n) to a constant vector, or a batch of them.
 
-    An array is one vector: batches enter through ``from_storage``. Raises DefinitionError for anything that
-    is no vector, and for a dimension other than ``dim``.
+    Raises DefinitionError for anything that is no vector, and for a dimension other than ``dim``.
     """
     if not isinstance(v, Vector):
         if isinstance(v, Value):
             raise DefinitionError(f"{here()}: {where} needs a vector, got {called(v)}")
-        try:
-            numbers = np.atleast_1d(np.asarray(v, dtype=np.float64))
-        except (TypeError, ValueError):
-            raise DefinitionError(
-                f"{here()}: {where} needs a vector or numbers, got a {type(v).__name__}"
-            ) from None
-        if numbers.ndim != 1 or numbers.size == 0:
+        numbers = np.atleast_1d(real_numbers(v, f"{here()}: {where} needs a vector or numbers"))
+        if 0 in numbers.shape[-1:]:
             raise DefinitionError(f"{here()}: {where} needs a vector, got an array of shape {numbers.shape}")
-        v = vector_class(numbers.size).from_storage(numbers)
+        if dim is not None and numbers.shape[-1] != dim:
+            raise DefinitionError(
+                f"{here()}: {where} needs a vector with {dim} entries, or an array of shape (..., {dim}), "
+                f"got R{numbers.shape[-1]} with {numbers.shape[-1]}, an array of shape {numbers.shape}"
+            )
+        v = vector_class(numbers.shape[-1]).from_storage(numbers)
     if dim is not None and len(v) != dim:
         raise DefinitionError(
             f"{here()}: {where} needs a vector with {dim} entries, got {called(v)} with {len(v)}; "

@@ -55,11 +55,16 @@ class Call:
     owner: Any = field(default=None, init=False)  # the compiled factor that this is a method of
     _positional: int = field(init=False)
     _keywords: tuple[str, ...] = field(init=False)
+    _defaults: Mapping[str, Any] = field(init=False)
 
     def __post_init__(self) -> None:
         keywords = tuple(p.name for p in self.parameters if p.keyword)
         object.__setattr__(self, "_positional", len(self.parameters) - len(keywords))
         object.__setattr__(self, "_keywords", keywords)
+        defaults = {
+            p.name: np.array(p.default).reshape(p.shape) for p in self.parameters if p.default is not None
+        }
+        object.__setattr__(self, "_defaults", defaults)
         object.__setattr__(self, "__doc__", self.doc)
         object.__setattr__(self, "__name__", self.name)
         object.__setattr__(self, "__signature__", signature(self.parameters))
@@ -93,15 +98,15 @@ class Call:
             self._refuse(arrays, given)
         names = [p.name for p in self.parameters]
         named = dict(zip(names, arrays, strict=False))
-        if named.keys() & given.keys() or {*named, *given} != set(names):
+        if named.keys() & given.keys() or {*named, *given, *self._defaults} != set(names):
             self._refuse(arrays, given)
-        named.update(given)
+        named = {**self._defaults, **named, **given}
         return tuple(named[name] for name in names)
 
     def _refuse(self, arrays: Sequence[Any], given: Mapping[str, Any]) -> NoReturn:
         names = [p.name for p in self.parameters]
         passed = [*names[: min(len(arrays), self._positional)], *given]
-        missing = [name for name in names if name not in passed]
+        missing = [name for name in names if name not in passed and name not in self._defaults]
         unknown = [name for name in given if name not in names]
         twice = [name for name in passed if passed.count(name) > 1]
         problems = [
@@ -125,7 +130,12 @@ class Call:
 def signature(parameters: Sequence[Parameter]) -> Signature:
     """What ``inspect.signature`` and ``help`` show."""
     places = [
-        Place(p.name, Place.KEYWORD_ONLY if p.keyword else Place.POSITIONAL_OR_KEYWORD) for p in parameters
+        Place(
+            p.name,
+            Place.KEYWORD_ONLY if p.keyword else Place.POSITIONAL_OR_KEYWORD,
+            default=Place.empty if p.default is None else p.default,
+        )
+        for p in parameters
     ]
     return Signature([*places, Place("out", Place.KEYWORD_ONLY, default=None)])
 

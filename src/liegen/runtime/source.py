@@ -25,12 +25,13 @@ PACKAGE = "liegen_compiled"
 
 @dataclass(frozen=True)
 class Parameter:
-    """An argument in the order of a call."""
+    """An argument in the order of a call; ``default`` stands for a keyword that a call leaves out."""
 
     name: str
     manifold: str
     shape: tuple[int, ...]
     keyword: bool
+    default: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +84,7 @@ def emitted(kernel: Kernel, *, summed: bool = False) -> Source:
     return Source(
         name=kernel.name,
         parameters=tuple(
-            Parameter(a.name, a.manifold, a.shape, a in kernel.keywords)
+            Parameter(a.name, a.manifold, a.shape, a in kernel.keywords, a.default)
             for a in (*kernel.positional, *kernel.keywords)
         ),
         methods=methods(kernel),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .charting import ChartLike as ChartLike
 from .charting import in_charts as in_charts
+from .defaults import constant as constant
 from .formulas import formula as formula
 from .frame_check import check_frames as check_frames
 from .frame_names import Frames as Frames

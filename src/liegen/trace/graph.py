@@ -9,7 +9,7 @@ from functools import cached_property
 from liegen.charts import GTSAM, Preset
 from liegen.errors import Site
 from liegen.layouts import OWN, Storage, Stored, storage
-from liegen.manifolds import Manifold, Node
+from liegen.manifolds import Manifold, Node, Value
 
 from .frame_declared import Declared
 from .frame_report import FrameReport
@@ -26,6 +26,7 @@ class Parameter:
     frames: Declared | None = None
     chart: Preset = GTSAM  # of its Jacobians' columns
     layout: Stored = OWN
+    default: Value | None = None  # what a call may leave out
 
     @property
     def storage(self) -> Storage:

@@ -18,6 +18,7 @@ from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_a
 from liegen.manifolds.vector import VectorLike, as_vector
 
 from .charting import ChartLike, common_chart, in_charts
+from .defaults import default_of
 from .frame_axes import Charts
 from .frame_check import check_frames
 from .frame_declared import Declared, declared
@@ -47,7 +48,7 @@ _MANIFOLDS = f"one of liegen's (R1 to R9, {', '.join(_NAMED)}) or class R12(R, d
 
 @dataclass(frozen=True)
 class Signature:
-    """A parameter as it is declared: ``bound`` holds a value that ``bind`` gave it."""
+    """A parameter as it is declared: ``bound`` is a value that ``bind`` gave it."""
 
     name: str
     manifold: type[Manifold]
@@ -55,6 +56,7 @@ class Signature:
     positional: bool
     bound: Value | None = None
     frames: Declared | None = None
+    default: Value | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +163,8 @@ def signature(function: Callable[..., Any]) -> tuple[Signature, ...]:
         manifold = _manifold(annotation, what)
         found.append(
             Signature(p.name, manifold, positional, positional,
-                      frames=declared(p.name, manifold, stated, what))
+                      frames=declared(p.name, manifold, stated, what),
+                      default=default_of(p.default, manifold, what, variable=positional))
         )  # fmt: skip
     if not any(s.variable for s in found):
         raise DefinitionError(f"{site}: {name} has no variables; put at least one argument before the *")
@@ -219,10 +222,11 @@ def trace(
     """
     site = site_of(function)
     parameters = tuple(
-        Parameter(s.name, s.manifold, s.variable, parameter(s.manifold, s.name, site), s.frames)
+        Parameter(s.name, s.manifold, s.variable, parameter(s.manifold, s.name, site), s.frames,
+                  default=s.default)
         for s in declared
         if s.bound is None
-    )
+    )  # fmt: skip
     traced = {p.name: p.manifold.holding(node=p.node) for p in parameters}
     values = {s.name: s.bound if s.bound is not None else traced[s.name] for s in declared}
     with _recording(common_chart(chart, f"{site}: {name}")) as record:

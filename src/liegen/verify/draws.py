@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from liegen.define import Function, Sampler
 from liegen.errors import DefinitionError
 from liegen.manifolds import Value
-from liegen.samples import CASES, Case, Draw, default_sampler, negated
+from liegen.samples import CASES, Case, Draw, negated
+from liegen.samples import sampler_of as own_sampler
 from liegen.trace import Graph
 
 AnyFunction = Function[..., Any]
@@ -94,8 +95,7 @@ def draw_one(function: AnyFunction, draw: Draw, case: Case) -> Sample:
 
 def sampler_of(function: AnyFunction) -> Sampler:
     """The sampler of a factor, with numbers for what noise and loss add."""
-    manifolds: dict[str, Any] = {p.name: p.manifold for p in function.plain.parameters}
-    own = function.sampler or default_sampler(manifolds)
+    own = own_sampler(function)
     weighting = function.weighting
     if weighting is None:
         return own
