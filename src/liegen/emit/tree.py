@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import difflib
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
-from typing import Any
+from pathlib import Path
 
-from liegen.errors import OutputError
-
-from .rendering import FORMAT
+from .manifest import manifest_path, manifests, read_manifest
 
 
 @dataclass(frozen=True)
@@ -24,11 +20,15 @@ class Change:
 
 @dataclass(frozen=True)
 class TreeReport:
-    """How a generated tree differs from what would be written now."""
+    """How a generated tree differs from what would be written now.
+
+    ``unlisted``: the orphans that no manifest lists, so that writing the tree does not remove them.
+    """
 
     missing: tuple[str, ...]
     changed: tuple[Change, ...]
     orphans: tuple[str, ...]
+    unlisted: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -36,54 +36,26 @@ class TreeReport:
         return not (self.missing or self.changed or self.orphans)
 
 
-def manifest_path(files: Mapping[str, str]) -> str:
-    """The manifest: the one file that lies in no folder."""
-    (path,) = (path for path in files if "/" not in path)
-    return path
-
-
 def folders(paths: Iterable[str]) -> tuple[str, ...]:
     """The folders at the top of a tree that belong to liegen."""
     return tuple(sorted({path.split("/")[0] for path in paths if "/" in path}))
 
 
-def read_manifest(path: Path) -> tuple[str, ...]:
-    """The files that an existing manifest lists, none where there is no manifest.
-
-    Raises :class:`OutputError` for a file that is no manifest of liegen, or lists a path outside of its tree.
-    """
-    if not path.exists():
-        return ()
-    try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
-        listed = (
-            tuple(sorted(str(name) for name in content["files"])) if content["format"] == FORMAT else None
-        )
-    except (OSError, ValueError, KeyError, TypeError):
-        listed = None
-    if listed is None or not all(map(_inside, listed)):
-        raise OutputError(
-            f"{path} is no manifest that liegen wrote; choose another folder or move that file away"
-        )
-    return listed
-
-
-def _inside(name: str) -> bool:
-    parts = PurePosixPath(name).parts
-    return len(parts) == 2 and name == "/".join(parts) and ".." not in parts and "\\" not in name
-
-
 def on_disk(directory: Path, tops: Iterable[str]) -> tuple[str, ...]:
-    """All files below the given folders, ``__pycache__`` left out; links count as files."""
+    """All files below the given folders, ``__pycache__`` left out; links count as files.
+
+    Raises OSError for a folder that cannot be read.
+    """
     found: list[str] = []
-    for top in tops:
-        root = directory / top
-        if root.is_symlink() or root.is_file():
-            found.append(top)
-            continue
-        below = sorted(root.rglob("*")) if root.is_dir() else []
-        paths = [p.relative_to(directory) for p in below if p.is_symlink() or not p.is_dir()]
-        found += [p.as_posix() for p in paths if "__pycache__" not in p.parts]
+    waiting = sorted(tops, reverse=True)
+    while waiting:
+        name = waiting.pop()
+        place = directory / name
+        if place.is_dir() and not place.is_symlink():
+            below = (f"{name}/{entry.name}" for entry in place.iterdir() if entry.name != "__pycache__")
+            waiting += sorted(below, reverse=True)
+        elif place.exists() or place.is_symlink():
+            found.append(name)
     return tuple(found)
 
 
@@ -91,19 +63,26 @@ def check_tree(files: Mapping[str, str], directory: Path) -> TreeReport:
     """Compare what :func:`render` gives with a folder. Nothing is written.
 
     Orphans are files that an older manifest lists, or that lie in the package's folder or the C folder,
-    and that ``files`` does not have. Raises :class:`OutputError` where the manifest cannot be read.
+    and that neither ``files`` nor the manifest of another package has. A link is a change whatever it leads
+    to: liegen writes plain files. Raises :class:`OutputError` where a manifest cannot be read.
     """
-    listed = read_manifest(directory / manifest_path(files))
+    manifest = manifest_path(files)
+    own = read_manifest(directory / manifest)
+    listed = own.files if own else ()
+    theirs = {p for other in manifests(directory) if other.path.name != manifest for p in other.files}
     missing: list[str] = []
     changed: list[Change] = []
     for path, text in sorted(files.items()):
         place = directory / path
-        if not place.is_file():
+        if place.is_symlink():
+            changed.append(Change(path, f"{path} is a link; liegen writes a file"))
+        elif not place.is_file():
             missing.append(path)
         elif place.read_bytes() != text.encode():
             changed.append(Change(path, _diff(path, place.read_bytes().decode(errors="replace"), text)))
-    present = on_disk(directory, folders([*files, *listed]))
-    return TreeReport(tuple(missing), tuple(changed), tuple(sorted(set(present) - set(files))))
+    orphans = sorted(set(on_disk(directory, folders([*files, *listed]))) - set(files) - theirs)
+    unlisted = tuple(path for path in orphans if path not in listed)
+    return TreeReport(tuple(missing), tuple(changed), tuple(orphans), unlisted)
 
 
 def _diff(path: str, old: str, new: str) -> str:

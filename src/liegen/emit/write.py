@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -11,60 +9,102 @@ from pathlib import Path
 
 from liegen.errors import OutputError
 
-from .tree import folders, manifest_path, on_disk, read_manifest
+from .journal import Changes, NotUndoneError, apply, locked, recovered, why
+from .manifest import check_owner, check_shared, manifest_path, manifests, read_manifest
+from .tree import folders, on_disk
 
-#: Foreign files that an error message names.
-NAMED = 5
+#: Foreign files that an error message names, and characters of a path.
+NAMED, SHOWN = 5, 200
 
 
 @dataclass(frozen=True)
 class Written:
-    """What :func:`write_tree` did: paths that were written, left as they were, and removed."""
+    """What :func:`write_tree` did: paths that were written, left as they were, and removed.
+
+    ``undone``: whether a run that was killed had left half of its changes, which were put back first.
+    """
 
     written: tuple[str, ...]
     unchanged: tuple[str, ...]
     removed: tuple[str, ...]
+    undone: bool = False
 
 
 def write_tree(files: Mapping[str, str], directory: Path) -> Written:
     """Write the files of :func:`render` into a folder, which is made if need be.
 
-    Files that the old manifest lists and ``files`` does not have are removed. Everything is first written to
-    a temporary folder inside ``directory``, then moved file by file, the manifest last; a failure puts back
-    what was there. Raises :class:`OutputError`, with nothing changed, where the folders hold files that
-    liegen did not write, or where writing fails.
+    Files that the old manifest lists and ``files`` does not have are removed. Files of other packages in the
+    folder stay, each package has its own manifest. All changes happen or none, see
+    :mod:`liegen.emit.journal`: a failure puts back what was there, and what a killed process left half done
+    is put back first. A second process waits. Raises :class:`OutputError`, with nothing changed, where the
+    folders hold files that liegen did not write or that belong to another package, or where writing fails.
     """
-    _check_place(directory)
+    shown = _shown(directory)
     try:
-        return _write(files, directory)
+        _check_place(directory)
+        with _made(directory), locked(directory):
+            undone = recovered(directory)
+            return _write(files, directory, bool(undone))
+    except NotUndoneError as error:
+        raise OutputError(
+            f"cannot write to {shown}: {error}. These could not be put back, so the folder is half written; "
+            "mend that and run liegen again: it puts back the rest first"
+        ) from error
     except OSError as error:
-        raise OutputError(f"cannot write to {directory}: {error}; nothing was changed") from error
+        raise OutputError(f"cannot write to {shown}: {why(error)}; nothing was changed") from error
 
 
-def _write(files: Mapping[str, str], directory: Path) -> Written:
+def _write(files: Mapping[str, str], directory: Path, undone: bool) -> Written:
     manifest = manifest_path(files)
-    listed = read_manifest(directory / manifest)
-    present = on_disk(directory, folders([*files, *listed]))
+    own = read_manifest(directory / manifest)
+    others = [m for m in manifests(directory) if m.path.name != manifest]
+    check_owner(files[manifest], own)
+    check_shared(files, others)
+    listed = set(own.files) if own else set[str]()
+    theirs = {path for other in others for path in other.files}
+    present = set(on_disk(directory, folders([*files, *listed]))) - theirs
     same = {path for path in [*present, manifest] if path in files and _same(directory / path, files[path])}
-    _refuse_foreign(sorted(set(present) - set(listed) - same), directory)
-    orphans = tuple(sorted((set(listed) & set(present)) - set(files)))
+    _refuse_foreign(sorted(present - listed - same), directory)
+    removed = tuple(sorted((listed & present) - set(files)))
     fresh = [path for path in files if path not in same and path != manifest]
     fresh += [] if manifest in same else [manifest]
-    if fresh or orphans:
-        with _made(directory, ["", *folders(fresh)]), _stage(directory) as stage:
-            _move(directory, stage, fresh, orphans, files)
-    for top in folders(orphans):
-        if not any((directory / top).iterdir()):
-            (directory / top).rmdir()
-    return Written(tuple(fresh), tuple(sorted(same)), orphans)
+    if fresh or removed:
+        changes = _changes(directory, fresh, removed)
+        apply(directory, files, changes)
+    return Written(tuple(fresh), tuple(sorted(same)), removed, undone)
+
+
+def _changes(directory: Path, fresh: Sequence[str], removed: Sequence[str]) -> Changes:
+    for path in fresh:
+        if (directory / path).is_dir() and not (directory / path).is_symlink():
+            raise OutputError(
+                f"{directory / path} is a folder where a file is to be written; nothing was changed. "
+                "Remove it, or choose another folder"
+            )
+    had = [path for path in fresh if (directory / path).exists() or (directory / path).is_symlink()]
+    made = [top for top in folders(fresh) if not (directory / top).exists()]
+    return Changes(tuple(fresh), tuple(removed), (*had, *removed), tuple(made))
 
 
 def _check_place(directory: Path) -> None:
-    existing = next(p for p in (directory, *directory.absolute().parents) if p.exists() or p.is_symlink())
+    if "\0" in str(directory):
+        raise OutputError("the path of an output folder cannot hold a null character")
+    try:
+        place = directory.absolute()
+    except FileNotFoundError:
+        raise OutputError(
+            "the current folder was removed; change to another one, or give the output folder's full path"
+        ) from None
+    existing = next(p for p in (place, *place.parents) if p.exists() or p.is_symlink())
     if not existing.is_dir():
         raise OutputError(
-            f"{existing} is a file, so nothing can be written to {directory}; choose another folder"
+            f"{existing} is a file, so nothing can be written to {_shown(directory)}; choose another folder"
         )
+
+
+def _shown(directory: Path) -> str:
+    text = str(directory)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}... ({len(text)} characters)"
 
 
 def _same(path: Path, text: str) -> bool:
@@ -81,56 +121,17 @@ def _refuse_foreign(foreign: Sequence[str], directory: Path) -> None:
 
 
 @contextmanager
-def _made(directory: Path, tops: Sequence[str]) -> Generator[None]:
-    """Make the folders, and take away again those that were made when the block fails."""
+def _made(directory: Path) -> Generator[None]:
+    """Make the folder and those above, and take away again those that were made when the block fails."""
     made: list[Path] = []
     try:
-        for place in [*reversed(directory.absolute().parents), *(directory / top for top in tops)]:
+        for place in [*reversed(directory.absolute().parents), directory]:
             if not place.exists():
-                place.mkdir()
+                place.mkdir(exist_ok=True)
                 made.append(place)
         yield
     except BaseException:
         for place in reversed(made):
             with suppress(OSError):
                 place.rmdir()
-        raise
-
-
-@contextmanager
-def _stage(directory: Path) -> Generator[Path]:
-    """A temporary folder on the same file system, so that a move is atomic."""
-    stage = Path(tempfile.mkdtemp(prefix=".liegen-", dir=directory))
-    try:
-        yield stage
-    finally:
-        shutil.rmtree(stage, ignore_errors=True)
-
-
-def _move(
-    directory: Path, stage: Path, fresh: Sequence[str], orphans: Sequence[str], files: Mapping[str, str]
-) -> None:
-    """Write, back up, and only then move; put everything back when a move fails."""
-    new, old = stage / "new", stage / "old"
-    for path in fresh:
-        (new / path).parent.mkdir(parents=True, exist_ok=True)
-        (new / path).write_bytes(files[path].encode())
-    backed = [path for path in [*fresh, *orphans] if (directory / path).exists()]
-    for path in backed:
-        (old / path).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(directory / path, old / path, follow_symlinks=False)
-    done: list[str] = []
-    try:
-        for path in orphans:
-            done.append(path)
-            (directory / path).unlink()
-        for path in fresh:
-            done.append(path)
-            (new / path).replace(directory / path)
-    except BaseException:
-        for path in reversed(done):
-            if path in backed:
-                (old / path).replace(directory / path)
-            else:
-                (directory / path).unlink(missing_ok=True)
         raise
