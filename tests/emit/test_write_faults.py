@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import signal
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -24,6 +25,17 @@ Files = dict[str, str]
 
 def files_of(kernels, targets):
     return render(kernels, targets, package="demo", regenerate=REGENERATE)
+
+
+@pytest.fixture
+def tmp_path(tmp_path):
+    """In memory where that can be: the tests below make many small trees."""
+    memory = Path("/dev/shm")
+    if not (memory.is_dir() and os.access(memory, os.W_OK)):
+        yield tmp_path
+        return
+    with tempfile.TemporaryDirectory(dir=memory) as name:
+        yield Path(name)
 
 
 @pytest.fixture(scope="module")

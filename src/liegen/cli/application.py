@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +24,17 @@ from .verify import verify
 #: Exit codes: 0 fine, 1 a check failed, and these.
 WRONG_USE, INTERNAL = 2, 3
 DEBUG = "LIEGEN_DEBUG"
+_UNPRINTED = "cannot write to standard output"
 
 
 class Refused(click.ClickException):
     """Wrong input: the message alone is enough."""
 
     exit_code = WRONG_USE
+
+
+class Unprinted(click.ClickException):
+    """Results that nobody can read; what the command did is done."""
 
 
 class Internal(click.ClickException):
@@ -48,6 +55,7 @@ class App(click.Group):
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except BrokenPipeError:
+            _close_output()
             raise click.exceptions.Exit(0) from None  # the reader, head for example, has seen enough
         except LiegenError as error:
             if debug:
@@ -58,6 +66,9 @@ class App(click.Group):
         except (SystemExit, GeneratorExit) as error:  # of a user's code: liegen ends by click's Exit
             raise Refused(f"code of the factors ended the program ({type(error).__name__})") from None
         except BaseException as error:
+            if isinstance(error, OSError) and _output_refuses(error):
+                _close_output()
+                raise Unprinted(f"{_UNPRINTED}: {error.strerror}") from None
             if debug:
                 raise
             text = " ".join(f"{type(error).__name__}: {error}".split())
@@ -65,6 +76,26 @@ class App(click.Group):
             raise Internal(
                 f"liegen itself failed: {printable(text)}\nSee the traceback with: {again}"
             ) from None
+
+
+def _output_refuses(error: OSError) -> bool:
+    """Whether an error is that of standard output, on a full disk for example: it names no file."""
+    if error.filename is not None:
+        return False
+    try:
+        sys.stdout.flush()
+        os.write(sys.stdout.fileno(), b"\n")
+    except OSError as again:
+        return again.errno == error.errno
+    return False
+
+
+def _close_output() -> None:
+    """What is left to print goes nowhere, so that the end of the process does not fail at it once more."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 def _need_folder() -> None:
@@ -93,4 +124,14 @@ for command in (list_factors, generate, verify, check, explain, check_jacobian, 
 
 def main() -> None:
     """Run the command line of this process."""
-    app(prog_name="liegen")
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by the shell; a file opened later must not take its number
+            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115
+    try:
+        app(prog_name="liegen")
+    except OSError as error:  # before a command runs: of --help
+        if not _output_refuses(error):
+            raise
+        _close_output()
+        click.echo(f"Error: {_UNPRINTED}: {error.strerror}", err=True)
+        sys.exit(1)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -15,7 +14,7 @@ from .generate import Request, generate, rendered, requested
 from .shared import say, source_argument
 
 if TYPE_CHECKING:
-    from liegen.emit import TreeReport
+    from liegen.emit import Manifest, TreeReport
 
 #: Lines of a diff that are shown for a file.
 SHOWN = 20
@@ -27,64 +26,102 @@ SHOWN = 20
 def check(directory: str, source: str | None) -> None:
     """Compare a generated tree with what would be written now. DIR is 'generated' by default.
 
-    Repeats the command that the tree's manifest states, and those of the trees right below it. Give SOURCE
-    where the manifest's file is not in the current folder, or beside DIR.
+    Repeats the command that each manifest in DIR states, and those of the trees right below it. Give SOURCE
+    where a manifest's file is not in the current folder, or beside DIR. What a killed 'generate' left half
+    written is put back first.
     """
     from liegen.emit import check_tree
 
     clean = True
-    for folder, manifest in _manifests(Path(directory)):
-        stated = str(manifest["options"]["regenerate"])
-        request = _request(stated, folder, source)
-        files = rendered(request, request.chosen(request.source), stated)
+    for manifest, request in _requests(Path(directory), source):
+        folder = manifest.path.parent
+        files = rendered(request, request.chosen(request.source), manifest.regenerate)
         report = check_tree(files, folder)
         for line in _lines(report, folder, len(files)):
             say(line)
         if not report.ok:
             clean = False
-            say(f"mend it with: {request.command(request.source, str(folder))}")
+            say(f"mend it with: {_cure(report, folder, request)}")
     if not clean:
         raise click.exceptions.Exit(1)
 
 
-def _manifests(folder: Path) -> list[tuple[Path, dict[str, Any]]]:
-    """Every manifest in the folder and right below it, with its folder. Raises OutputError without any."""
-    from liegen.emit.rendering import FORMAT
-    from liegen.errors import OutputError
+def _requests(top: Path, source: str | None) -> list[tuple[Manifest, Request]]:
+    """Every manifest in the folder and right below it, and what it asks for.
 
-    found: list[tuple[Path, dict[str, Any]]] = []
-    for path in [*sorted(folder.glob("*.json")), *sorted(folder.glob("*/*.json"))]:
-        try:
-            content: Any = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            continue
-        if isinstance(content, dict) and content.get("format") == FORMAT:  # pyright: ignore[reportUnknownMemberType]
-            found.append((path.parent, content))  # pyright: ignore[reportUnknownArgumentType]
+    ``source`` stands for the file of that name; where there is one manifest, for its source whatever the
+    name. Raises OutputError without a manifest, SourceError where a source is not found.
+    """
+    from liegen.emit import manifests, put_back
+    from liegen.errors import OutputError, SourceError
+
+    found: list[Manifest] = []
+    for folder in _folders(top):
+        if put_back(folder):
+            say(f"{folder}: a run of liegen was killed while it wrote here; what it had changed was put back")
+        found += manifests(folder)
     if not found:
         raise OutputError(
-            f"{folder} holds no manifest that liegen wrote; "
-            f"generate it first: {shlex.join(['liegen', 'generate', '-o', str(folder)])}"
+            f"{top} holds no manifest that liegen wrote; "
+            f"generate it first: {shlex.join(['liegen', 'generate', '-o', str(top)])}"
         )
-    return found
+    meant = [m for m in found if source is not None and (len(found) == 1 or _same_name(m.source, source))]
+    if source is not None and not meant:
+        sources = ", ".join(dict.fromkeys(m.source or "the library" for m in found))
+        raise SourceError(f"nothing in {top} was made from {source}; it was made from {sources}")
+    return [(m, _request(m, source if m in meant else None)) for m in found]
 
 
-def _request(stated: str, folder: Path, source: str | None) -> Request:
+def _folders(top: Path) -> list[Path]:
+    """The folder and those right below it. Raises OutputError where it cannot be read."""
+    from liegen.errors import OutputError
+
+    try:
+        below = sorted(path for path in top.iterdir() if path.is_dir()) if top.exists() else []
+    except OSError as error:
+        raise OutputError(f"cannot read {top}: {error.strerror}; give the folder of a tree") from None
+    return [top, *(path for path in below if not path.name.startswith("."))]
+
+
+def _same_name(stated: str, source: str) -> bool:
+    return stated in (source, Path(source).name)
+
+
+def _request(manifest: Manifest, source: str | None) -> Request:
     """Read the command of a manifest; ``source`` replaces its file."""
-    from liegen.errors import SourceError
+    from liegen.errors import OutputError, SourceError
 
-    with generate.make_context("generate", shlex.split(stated)[2:], resilient_parsing=True) as context:
-        given = context.params
-    original: str | None = given["source"]
-    place = source or original
-    if source is None and original is not None and original.endswith(".py"):
-        candidates = (Path(original), folder / original, folder.absolute().parent / original)
-        place = next((str(p) for p in candidates if p.is_file()), None)
+    folder = manifest.path.parent
+    try:
+        words = shlex.split(manifest.regenerate)
+        if words[:2] != ["liegen", "generate"]:
+            raise ValueError("it does not begin with liegen generate")
+        with generate.make_context("generate", words[2:], help_option_names=[]) as context:
+            request = requested(context.params)
+    except (click.ClickException, click.exceptions.Exit, ValueError) as error:
+        reason = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        raise OutputError(
+            f"{manifest.path} states a command that this version of liegen does not know ({reason}): "
+            f"{manifest.regenerate}; generate the folder anew"
+        ) from None
+    place = source or request.source
+    if source is None and place is not None and place.endswith(".py"):
+        candidates = (Path(place), folder / place, folder.absolute().parent / place)
+        original, place = place, next((str(p) for p in candidates if p.is_file()), None)
         if place is None:
             raise SourceError(
                 f"{folder} was made from {original}, which is not here; say where it is: "
                 f"liegen check {shlex.quote(str(folder))} PATH/{original}"
             )
-    return replace(requested(given), source=place)
+    return replace(request, source=place)
+
+
+def _cure(report: TreeReport, folder: Path, request: Request) -> str:
+    """The commands after which nothing differs: ``generate`` spares files that no manifest lists."""
+    steps = [shlex.join(["rm", *(str(folder / path) for path in report.unlisted)])] if report.unlisted else []
+    if report.missing or report.changed or set(report.orphans) - set(report.unlisted):
+        steps.append(request.command(request.source, str(folder)))
+    return " && ".join(steps)
 
 
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:
@@ -94,7 +131,8 @@ def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:
     for path in report.missing:
         yield f"missing  {folder / path}"
     for path in report.orphans:
-        yield f"orphan   {folder / path}: liegen would not write it; remove it"
+        known = "no manifest lists it" if path in report.unlisted else "liegen would not write it"
+        yield f"orphan   {folder / path}: {known}"
     for change in report.changed:
         yield f"changed  {folder / change.path}"
         diff = change.diff.splitlines()

@@ -183,6 +183,8 @@ def generate(output: str, **given: Any) -> None:
     files = rendered(request, functions, request.header)
     times.append(time.perf_counter())
     done = write_tree(files, Path(output))
+    if done.undone:
+        say(f"{output}: a run of liegen was killed while it wrote here; its changes were put back first")
     table(
         ("factor", "operations", "with Jacobians"),
         [_row(kernel) for kernel in kernels],

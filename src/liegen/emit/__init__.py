@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from .manifest import Manifest as Manifest
+from .manifest import manifests as manifests
 from .names import check_names as check_names
 from .rendering import LAYOUTS as LAYOUTS
 from .rendering import render as render
@@ -13,4 +15,5 @@ from .tree import Change as Change
 from .tree import TreeReport as TreeReport
 from .tree import check_tree as check_tree
 from .write import Written as Written
+from .write import put_back as put_back
 from .write import write_tree as write_tree

@@ -37,6 +37,8 @@ JOURNAL, PART, NEW, OLD = "journal.json", "journal.part", "new", "old"
 FORMAT = "liegen journal 1"
 #: Seconds to wait for another process that writes to the same folder.
 WAIT = 20.0
+#: Characters of a path that a message shows.
+_LONGEST_NAME = 200
 _STAGE = re.compile(re.escape(PREFIX) + r"[a-z0-9_]{8}")
 _BUSY = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES)
 
@@ -135,7 +137,8 @@ def why(error: BaseException) -> str:
     if not isinstance(error, OSError) or not error.strerror:
         return str(error) or type(error).__name__
     name = str(error.filename2 or error.filename or "")
-    return error.strerror if not name or PREFIX in name else f"{error.strerror}: {name}"
+    left_out = not name or PREFIX in name or len(name) > _LONGEST_NAME
+    return error.strerror if left_out else f"{error.strerror}: {name}"
 
 
 def _folders(changes: Changes) -> list[str]:
@@ -209,7 +212,7 @@ def left_behind(directory: Path) -> bool:
 def _stages(directory: Path) -> list[Path]:
     try:
         return sorted(path for path in directory.iterdir() if _STAGE.fullmatch(path.name) and _is_stage(path))
-    except (FileNotFoundError, NotADirectoryError):
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
         return []
 
 

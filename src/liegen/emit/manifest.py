@@ -67,8 +67,9 @@ def read_manifest(path: Path) -> Manifest | None:
         raise _refused(path, str(error)) from None
     content = _parsed(path, text)
     if content.get("format") != FORMAT:
-        other = f"{_MARK} " in str(content.get("format"))
-        raise _refused(path, "another version of liegen wrote it" if other else "it does not say so")
+        if f"{_MARK} " in str(content.get("format")):
+            raise OutputError(f"another version of liegen wrote {path}; use that one, or another folder")
+        raise _refused(path, "it does not say so")
     options, files = content.get("options"), content.get("files")
     regenerate = cast("dict[str, Any]", options).get("regenerate") if isinstance(options, dict) else None
     if not isinstance(regenerate, str):
@@ -81,17 +82,27 @@ def read_manifest(path: Path) -> Manifest | None:
 def manifests(directory: Path) -> tuple[Manifest, ...]:
     """All manifests in a folder; files that are none are left out.
 
-    Raises :class:`OutputError` for one that is damaged, or that another version of liegen wrote.
+    Raises :class:`OutputError` for one that is damaged, or that another version of liegen wrote: which files
+    are its own cannot be told.
     """
     found: list[Manifest] = []
     for path in sorted(directory.glob("*.json")):
-        try:
-            ours = _MARK in _text(path)
-        except (OSError, ValueError):
-            continue
-        manifest = read_manifest(path) if ours else None
+        manifest = read_manifest(path) if _may_be_manifest(path) else None
         found += [manifest] if manifest else []
     return tuple(found)
+
+
+def _may_be_manifest(path: Path) -> bool:
+    """Whether a file says so, or is damaged and lies beside a folder of its name, as manifests do."""
+    try:
+        text = _text(path)
+    except (OSError, ValueError):
+        return False
+    try:
+        content: Any = json.loads(text)
+    except (ValueError, RecursionError):
+        return _MARK in text or path.with_suffix("").is_dir()
+    return isinstance(content, dict) and _MARK in str(cast("dict[str, Any]", content).get("format"))
 
 
 def inside(name: str) -> bool:

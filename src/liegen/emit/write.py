@@ -9,7 +9,7 @@ from pathlib import Path
 
 from liegen.errors import OutputError
 
-from .journal import Changes, NotUndoneError, apply, locked, recovered, why
+from .journal import Changes, NotUndoneError, apply, left_behind, locked, recovered, why
 from .manifest import check_owner, check_shared, manifest_path, manifests, read_manifest
 from .tree import folders, on_disk
 
@@ -52,6 +52,23 @@ def write_tree(files: Mapping[str, str], directory: Path) -> Written:
         ) from error
     except OSError as error:
         raise OutputError(f"cannot write to {shown}: {why(error)}; nothing was changed") from error
+
+
+def put_back(directory: Path) -> bool:
+    """Undo what a killed run left half done in a folder: whether there was such a run.
+
+    Waits for a run that is alive. Raises :class:`OutputError` where that fails.
+    """
+    try:
+        if not left_behind(directory):
+            return False
+        with locked(directory):
+            return bool(recovered(directory))
+    except OSError as error:
+        raise OutputError(
+            f"a run of liegen was killed while it wrote to {_shown(directory)}; "
+            f"what it changed cannot be put back: {why(error)}"
+        ) from error
 
 
 def _write(files: Mapping[str, str], directory: Path, undone: bool) -> Written:
