@@ -154,3 +154,11 @@ def test_unknown_choices_list_those_that_exist():
     ):
         with pytest.raises(DefinitionError, match=cure):
             form_chart(G.form, preset(chart, ""))
+
+
+@pytest.mark.parametrize("w", [0.0, -0.0])
+def test_at_half_a_turn_the_quaternion_keeps_its_sign(w):
+    """Both (v, 0) and (-v, 0) are the rotation; what is stored decides, whatever the sign of its zero."""
+    chart = chart_of(SO3, PRESETS["g2o"])
+    for v in ((0.6, 0.0, -0.8), (-0.6, 0.0, 0.8)):
+        np.testing.assert_array_equal(chart.local((0.0, 0.0, 0.0, 1.0), (*v, w)), v)
