@@ -1,5 +1,6 @@
 """Each preset against its definition, its blocks and column map against AD of its own retract and local."""
 
+from dataclasses import replace
 from itertools import product
 
 import casadi as ca
@@ -162,3 +163,16 @@ def test_at_half_a_turn_the_quaternion_keeps_its_sign(w):
     chart = chart_of(SO3, PRESETS["g2o"])
     for v in ((0.6, 0.0, -0.8), (-0.6, 0.0, 0.8)):
         np.testing.assert_array_equal(chart.local((0.0, 0.0, 0.0, 1.0), (*v, w)), v)
+
+
+@pytest.mark.parametrize("chart", [c for c in EVERY if c.scale == 2 and c.rotation == "exp"], ids=str)
+@pytest.mark.parametrize("name", ["SO3", "SE3"])
+def test_a_scale_of_2_takes_half_of_the_rotations_coordinates(name, chart):
+    G = GROUPS[name]
+    whole = chart_of(G, preset(replace(chart, scale=1), ""))
+    half = chart_of(G, preset(chart, ""))
+    x, y = random_coords(G, 1), random_coords(G, 2)
+    turned = slice(0, 3) if chart.order == "rotation-first" or name == "SO3" else slice(3, 6)
+    expected = np.array(whole.local(x, y), dtype=float)
+    expected[turned] /= 2
+    np.testing.assert_allclose(np.array(half.local(x, y), dtype=float), expected, atol=1e-14)
