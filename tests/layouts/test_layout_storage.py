@@ -128,3 +128,15 @@ def test_what_does_not_exist_is_refused():
         Layout(rotation="euler")
     with pytest.raises(DefinitionError, match="f: unknown layout 'drake'; one of xyzw, wxyz, matrix"):
         stored("drake", "f")
+
+
+def test_where_the_rotation_of_a_matrix_by_columns_stands():
+    (places,) = storage(SE3.form, LAYOUTS["3x4-col"]).lengths
+    assert sorted(places) == list(range(9))
+    (places,) = storage(SE3.form, LAYOUTS["3x4"]).lengths
+    assert sorted(places) == [0, 1, 2, 4, 5, 6, 8, 9, 10]
+
+
+def test_an_angle_needs_no_unit_length():
+    angle = storage(SE2.form, LAYOUTS["g2o"])
+    assert (angle.units, angle.lengths) == ((), ())

@@ -80,5 +80,5 @@ def run(mutant: Mutant, place: Path) -> Result:
     start = time.monotonic()
     with changed(mutant, place):
         code, output = outcome_of(place, mutant.tests)
-    outcome = {0: "survived", 1: "caught"}.get(code, "broken")
+    outcome = "caught" if code < 0 else {0: "survived", 1: "caught"}.get(code, "broken")  # < 0: it crashed
     return Result(mutant, outcome, time.monotonic() - start, output)

@@ -50,6 +50,7 @@ ACCEPTED = {
     "v_A + v2_A": "A",
     "v_A - v2_A": "A",
     "d_A - p_A": "A",
+    "s / v_A - p_A": "A",  # the reciprocal of a free vector is none
     "(p_A + p2_A) / 2 - p_A": "A",
     "p_A.local(p2_A)": "A",
     "p_A.between(p2_A)": "A",
@@ -291,3 +292,10 @@ def test_the_line_is_the_users():
 
     line = int(str(error.value).split(":")[1])
     assert "# here" in Path(__file__).read_text(encoding="utf-8").splitlines()[line - 1]
+
+
+def test_a_tangent_vector_is_moved_by_the_rotation_alone():
+    with pytest.raises(
+        DefinitionError, match=r"write T_AB\.rotation @ T_AB\.rotation\.local\(T_AC\.rotation\)"
+    ):
+        made("T_AB.rotation.local(T_AC.rotation) - T_AB.rotation.log()")
