@@ -4,11 +4,13 @@ import math
 from functools import partial
 from itertools import product
 
+import casadi as ca
 import pytest
 from pass_tools import X, lowered
 
 from liegen.program import Instruction, Port, Program
-from liegen.program.passes import cse, factor, fold, signs
+from liegen.program.kinds import fused
+from liegen.program.passes import contract, cse, factor, fold, signs
 from liegen.program.passes.nary import Pairs
 from liegen.program.rewrite import Builder
 
@@ -117,3 +119,11 @@ def test_an_instruction_refers_to_earlier_ones(operand):
     made = Program("p", (), (Port("r", (1,)),), (Instruction("neg", (operand,)),), ((0,),))
     with pytest.raises(ValueError, match="refers to a later one"):
         made.validate()
+
+
+def test_sums_begin_with_what_is_no_product():
+    """e + a b + c d is two fused operations, a b + c d + e one and a product; also where e is late."""
+    a, b, c, d, e = X[:5]
+    before = lowered(a * b + c * d + ca.sin(e))
+    assert fused(before) == 1
+    assert fused(contract(before)) == 2
