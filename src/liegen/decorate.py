@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, ParamSpec, TypeVar, overload
 
+from liegen.arguments import callable_of, name_of
 from liegen.define import Function, Sampler
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Vector
@@ -24,6 +25,7 @@ def factor(function: Callable[P, Vector], /) -> Function[P, Vector]: ...
 @overload
 def factor(
     *,
+    name: str = "",
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
@@ -36,6 +38,7 @@ def factor(
     noise: str | None = None,
     loss: str | None = None,
     mode: str | None = None,
+    name: str = "",
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
@@ -49,6 +52,7 @@ def factor(
     noise: str | None = None,
     loss: str | None = None,
     mode: str | None = None,
+    name: str = "",
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
@@ -58,7 +62,8 @@ def factor(
     """Make a factor of a function that returns a residual vector.
 
     Positional parameters are variables, keyword-only ones are given; annotations are their manifolds.
-    ``sample`` draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
+    ``name`` is that of the generated code, by default the function's own: factories give theirs. ``sample``
+    draws arguments for verification. With ``frames=False`` names such as ``T_WB`` do
     not declare frames. ``chart`` is that of ``local`` and ``retract`` and of the Jacobians' columns: the name
     of a preset (``"sophus"``) or a ``liegen.Chart``; or charts of the columns of single variables,
     ``{"x": "sophus"}``. By default it is that of GTSAM 4.3. ``layout`` is what rotations and poses are stored
@@ -74,8 +79,8 @@ def factor(
     """
     weighting = read_weighting(noise, loss, mode, str(here()))
     return _decorated(
-        function, sample, is_factor=True, frames=frames, chart=chart, layout=layout, normalise=normalise,
-        weighting=weighting,
+        function, name, sample, is_factor=True, frames=frames, chart=chart, layout=layout,
+        normalise=normalise, weighting=weighting,
     )  # fmt: skip
 
 
@@ -84,6 +89,7 @@ def function(function: Callable[P, S], /) -> Function[P, S]: ...
 @overload
 def function(
     *,
+    name: str = "",
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
@@ -94,6 +100,7 @@ def function(
     function: Any = None,
     /,
     *,
+    name: str = "",
     sample: Sampler | None = None,
     frames: bool = True,
     chart: ChartLike | None = None,
@@ -102,15 +109,24 @@ def function(
 ) -> Any:
     """Make a function with outputs on any manifolds: return one typed value, or ``outputs(R=..., p=...)``.
 
-    ``chart``, ``layout`` and ``normalise`` as in :func:`factor`; the first two are those of the outputs too.
+    ``name``, ``sample``, ``chart``, ``layout`` and ``normalise`` as in :func:`factor`; chart and layout are
+    those of the outputs too.
     """
     return _decorated(
-        function, sample, is_factor=False, frames=frames, chart=chart, layout=layout, normalise=normalise
+        function,
+        name,
+        sample,
+        is_factor=False,
+        frames=frames,
+        chart=chart,
+        layout=layout,
+        normalise=normalise,
     )
 
 
 def _decorated(
     function: Any,
+    name: str,
     sample: Sampler | None,
     *,
     is_factor: bool,
@@ -122,19 +138,20 @@ def _decorated(
 ) -> Callable[..., Any]:
     if function is None:
         return partial(
-            _decorated, sample=sample, is_factor=is_factor, frames=frames, chart=chart, layout=layout,
-            normalise=normalise, weighting=weighting,
+            _decorated, name=name, sample=sample, is_factor=is_factor, frames=frames, chart=chart,
+            layout=layout, normalise=normalise, weighting=weighting,
         )  # fmt: skip
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
+    what = f"{here()}: {function.__name__}"
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
         function,
         signature(function),
-        function.__name__,
+        name_of(name, f"{what}: name=") or function.__name__,
         doc,
         is_factor,
-        sample,
+        callable_of(sample, f"{what}: sample="),
         frames,
         chart,
         weighting=weighting,

@@ -87,7 +87,7 @@ class Function(Generic[P, T]):
 
         if not self.is_factor:
             what = "is a @function, without a residual; Gauss-Newton terms are of a @factor"
-            raise DefinitionError(f"{here()}: {self.name} {what}")
+            raise DefinitionError(f"{self.plain.site}: {self.name} {what}")
         return gauss_newton_kernel(self.kernel, self.plain, self.weighting)
 
     @property
@@ -220,7 +220,8 @@ class Function(Generic[P, T]):
         """
         if not self.is_factor:
             raise DefinitionError(
-                f"{here()}: {self.name} is a @function; noise and loss are of a @factor, which has a residual"
+                f"{self.plain.site}: {self.name} is a @function; noise and loss are of a @factor, "
+                "which has a residual"
             )
         return self._copy(self.declared, name, doc, None, read_weighting(noise, loss, mode, self.name))
 

@@ -224,7 +224,7 @@ def _refuse_twins(module: ModuleType, tree: ast.Module, functions: Mapping[str, 
             places = " and ".join(f"{k} ({Site(file, lines[k])})" if k in lines else k for k in (other, key))
             raise DefinitionError(
                 f"{places} are two factors with the name {f.name!r}; rename one of them, "
-                "with name=... in vary, fix or bind"
+                "with name=... in @factor, @function, vary, fix or bind"
             )
 
 

@@ -22,6 +22,7 @@ from .shared import (
     new_folder,
     noise_options,
     say,
+    say_left,
     source_argument,
     table,
     tracked,
@@ -111,7 +112,7 @@ def derived(functions: Sequence[AnyFunction], *, gauss_newton: bool = False) -> 
     return [
         kernel
         for f in tracked(functions, "derive", lambda f: f.name)
-        for kernel in (f.kernel, *([f.gauss_newton_kernel] if gauss_newton else []))
+        for kernel in (f.kernel, *([f.gauss_newton_kernel] if gauss_newton and f.is_factor else []))
     ]
 
 
@@ -175,6 +176,7 @@ def generate(output: str, **given: Any) -> None:
 
     request = requested(given)
     functions = request.chosen(request.source)
+    say_left(functions, [request.noise, request.loss, request.mode, request.gauss_newton])
     for module in ("derive", "emit", "verify"):  # loading CasADi and Jinja2 is no part of the times below
         importlib.import_module(f"liegen.{module}")
     times = [time.perf_counter()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from liegen.errors import DefinitionError
 from liegen.text import one_line, printable
 
 from .tables import table as table
@@ -101,10 +102,30 @@ def noise_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def weighed(
     functions: Sequence[AnyFunction], noise: str | None, loss: str | None, mode: str | None
 ) -> tuple[AnyFunction, ...]:
-    """The factors with noise and loss; those of before where none is given."""
+    """The factors with noise and loss; those of before where none is given.
+
+    A ``@function`` has no residual to weigh and stays as it is. Raises DefinitionError where there is no
+    factor.
+    """
     if noise is loss is mode is None:
         return tuple(functions)
-    return tuple(f.whitened(noise, loss, mode) for f in functions)
+    some = any(f.is_factor for f in functions)
+    return tuple(f if some and not f.is_factor else f.whitened(noise, loss, mode) for f in functions)
+
+
+def say_left(functions: Sequence[AnyFunction], options: Collection[object]) -> None:
+    """A note on the functions that options of factors leave as they are, where one of the options is given.
+
+    Raises DefinitionError where there is no factor.
+    """
+    left = [f for f in functions if not f.is_factor]
+    if not any(options) or not left:
+        return
+    names = ", ".join(f.name for f in left)
+    options_of = "--noise, --loss, --mode and --gauss-newton are of factors, which have a residual"
+    if len(left) == len(functions):
+        raise DefinitionError(f"{left[0].plain.site}: {options_of}; there is none: {names}")
+    click.echo(printable(f"note: {options_of}; left as they are: {names}"), err=True)
 
 
 def weighed_by_name(
@@ -118,9 +139,7 @@ def weighed_by_name(
     """All factors of a source in a convention, with noise and loss: how other processes load them again."""
     from liegen.sources import load
 
-    plain = noise is loss is mode is None
-    factors = convention.of([f for f in load(source, groups) if f.is_factor or plain])
-    return {f.name: f for f in weighed(factors, noise, loss, mode)}
+    return {f.name: f for f in weighed(convention.of(load(source, groups)), noise, loss, mode)}
 
 
 @dataclass(frozen=True)

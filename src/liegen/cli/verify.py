@@ -22,6 +22,7 @@ from .shared import (
     names_option,
     noise_options,
     say,
+    say_left,
     source_argument,
     table,
     weighed,
@@ -95,6 +96,7 @@ def verify(
 
     convention = Convention(chart, layout, normalise)
     functions = weighed(chosen(source, names, groups, convention), noise, loss, mode)
+    say_left(functions, [noise, loss, mode, gauss_newton])
     started = time.monotonic()
     with bar("verify", "verified") as told:
         report = run(
