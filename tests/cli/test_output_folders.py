@@ -261,7 +261,7 @@ LONG = "n" * 300
 
 
 @pytest.mark.parametrize(("place", "message"), [
-    ("a.py", "a.py is a file, so nothing can be written to a.py"),
+    ("a.py", "a.py is a file; choose another folder"),
     ("a.py/deeper/still", "is a file, so nothing can be written to a.py/deeper/still"),
     (LONG, "File name too long"),
     (f"new/{LONG}/x", "File name too long"),
@@ -275,6 +275,7 @@ def test_a_place_that_cannot_be_written_to(place, message, folder):
     told = run("generate", "a.py", "-o", place, "-t", "numpy", code=2)
     assert any(part in told for part in message.split("|"))
     assert len(told) < 600
+    assert str(folder) not in told
     assert files(folder) == before
     assert not Path("new").exists()
 

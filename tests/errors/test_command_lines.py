@@ -99,6 +99,8 @@ generate good.py -o out --loss '' | unknown loss ''
 generate good.py -o out --loss huber --mode nosuch | unknown mode 'nosuch'; choose from irls
 generate good.py -o out --mode irls | mode='irls' is one of a loss
 generate good.py -o good.py | good.py is a file
+generate good.py -o good.py/sub | good.py is a file, so nothing can be written to good.py/sub
+generate good.py -o good.py/sub/sub | good.py is a file
 generate good.py --group SE3 -o out | not both
 generate --group SE4 -o out | no group 'SE4'; {groups}
 generate --group SE3 --group '' -o out | no group ''
@@ -134,8 +136,10 @@ verify nosuch.py | nosuch.py does not exist
 verify nosuch | no module 'nosuch'
 verify good.py --json=1 | does not take a value
 check nosuch | nosuch holds no manifest
-check good.py | good.py holds no manifest
+check good.py | good.py is a file, not a folder that liegen wrote
 check filled | filled holds no manifest
+check nested | nested holds no manifest
+check '' | holds no manifest
 check badjson | badjson holds no manifest
 check otherformat | otherformat holds no manifest
 check listed | listed holds no manifest

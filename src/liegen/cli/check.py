@@ -76,6 +76,8 @@ def _folders(top: Path) -> list[Path]:
     """The folder and those right below it. Raises OutputError where it cannot be read."""
     from liegen.errors import OutputError
 
+    if top.is_file():
+        raise OutputError(f"{top} is a file, not a folder that liegen wrote; give the folder")
     try:
         below = sorted(path for path in top.iterdir() if path.is_dir()) if top.exists() else []
     except OSError as error:
@@ -106,7 +108,7 @@ def _request(manifest: Manifest, source: str | None) -> Request:
         ) from None
     place = source or request.source
     if source is None and place is not None and place.endswith(".py"):
-        candidates = (Path(place), folder / place, folder.absolute().parent / place)
+        candidates = (Path(place), folder / place, folder.parent / place, folder.absolute().parent / place)
         original, place = place, next((str(p) for p in candidates if p.is_file()), None)
         if place is None:
             raise SourceError(

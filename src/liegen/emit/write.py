@@ -107,16 +107,16 @@ def _check_place(directory: Path) -> None:
     if "\0" in str(directory):
         raise OutputError("the path of an output folder cannot hold a null character")
     try:
-        place = directory.absolute()
+        directory.absolute()
     except FileNotFoundError:
         raise OutputError(
             "the current folder was removed; change to another one, or give the output folder's full path"
         ) from None
-    existing = next(p for p in (place, *place.parents) if p.exists() or p.is_symlink())
-    if not existing.is_dir():
-        raise OutputError(
-            f"{existing} is a file, so nothing can be written to {_shown(directory)}; choose another folder"
-        )
+    existing = next((p for p in (directory, *directory.parents) if p.exists() or p.is_symlink()), None)
+    if existing and not existing.is_dir():
+        said = f"{_shown(existing)} is a file"
+        said += "" if existing == directory else f", so nothing can be written to {_shown(directory)}"
+        raise OutputError(f"{said}; choose another folder")
 
 
 def _shown(directory: Path) -> str:
@@ -142,7 +142,7 @@ def _made(directory: Path) -> Generator[None]:
     """Make the folder and those above, and take away again those that were made when the block fails."""
     made: list[Path] = []
     try:
-        for place in [*reversed(directory.absolute().parents), directory]:
+        for place in [*reversed(directory.parents), directory]:
             if not place.exists():
                 place.mkdir(exist_ok=True)
                 made.append(place)
