@@ -1,202 +1,139 @@
-"""Read a 2D or 3D pose graph from a `.g2o` file, in liegen's storage and tangent order.
+"""Read and write a 2D or 3D pose graph, with landmarks and priors, in liegen's storage and tangent order.
 
-The format (one record a line, `#` starts a comment):
-
-    VERTEX_SE2 id  x y theta                    EDGE_SE2 i j  dx dy dtheta  I11 I12 I13 I22 I23 I33
-    VERTEX_SE3:QUAT id  x y z qx qy qz qw       EDGE_SE3:QUAT i j  x y z qx qy qz qw  I11 I12 ... I66
-    FIX id ...
-
-Metres and radians. An edge measures pose j in the frame of pose i. Its information matrix (the inverse
-covariance) is an upper triangle, row by row, in the order (translation, rotation). It is taken as that of the
-tangent vector (x, y, angle) or (translation, rotation vector). `FIX` holds poses where they start.
+`g2o_lines.py` has the lines of the format. An edge's information matrix (the inverse covariance) is an upper
+triangle, row by row, in the order (translation, rotation). It is taken as that of the tangent vector
+(x, y, angle) or (translation, rotation vector), and may be zero in directions that were not measured.
+`FIX` holds vertices where they start; without it, and without a prior, the first pose is held.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+import liegen_groups
 import numpy as np
+from g2o_lines import EDGES, FIX, OFFSET, POSE, POSE3, VERTEX, EdgeKind, Floats, G2oError, Kind, Record, parse
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
+#: Eigenvalues of an information matrix so far below 0, on its own scale, are left by the digits of the file.
+ROUNDING = 1e-5
 
 
-class G2oError(ValueError):
-    """A file that is no usable pose graph; the message has the file, the line and the cure."""
+@dataclass(frozen=True)
+class Vertices:
+    """N poses or points of one manifold."""
+
+    ids: Indices  # (N,) in the file
+    values: Floats  # (N, n) in liegen's storage
+    held: NDArray[np.bool_]  # (N,) which stay where they are
+    lines: Indices  # (N,) in the file
+
+
+@dataclass(frozen=True)
+class Edges:
+    """E measurements with one tag; `ends[:, k]` counts in the vertices of the k-th end's manifold."""
+
+    ends: Indices  # (E, 1) or (E, 2)
+    measurements: Floats  # (E, n) in liegen's storage
+    information: Floats  # (E, m, m) in liegen's tangent order
 
 
 @dataclass(frozen=True)
 class Graph:
-    """N poses and E measurements of relative poses, every field one array."""
+    """A file's vertices by manifold, and edges by tag."""
 
-    group: str  # "SE2" or "SE3"
-    poses: Floats  # (N, 4) cos, sin, x, y   or   (N, 7) qx, qy, qz, qw, x, y, z
-    i: Indices  # (E,) the pose in whose frame the edge was measured
-    j: Indices  # (E,) the measured pose
-    measurements: Floats  # (E, 4) or (E, 7), stored like the poses
-    information: Floats  # (E, k, k) in liegen's tangent order
-    held: Indices  # the poses of FIX lines, else the first
-    ids: Indices  # (N,) the ids in the file
-    left_out: dict[str, int] = field(default_factory=dict)  # unknown tags and how many lines had them
+    vertices: Mapping[str, Vertices]  # "SE2" and "R2", or "SE3" and "R3"
+    edges: Mapping[str, Edges]
+    lines: Sequence[str]  # the file
 
-
-@dataclass(frozen=True)
-class Format:
-    """How one group is written in a file."""
-
-    group: str
-    values: str  # the numbers of a pose
-    width: int  # how many
-    to_storage: Callable[[Floats], Floats]  # (..., width) in the file's order -> liegen's storage
-    tangent: tuple[int, ...]  # liegen's tangent order in terms of the file's
-
-
-def se2_storage(values: Floats) -> Floats:
-    x, y, theta = np.moveaxis(values, -1, 0)
-    return np.stack([np.cos(theta), np.sin(theta), x, y], axis=-1)
-
-
-def se3_storage(values: Floats) -> Floats:
-    """Files print few digits, so quaternions are made unit again."""
-    translation, quaternion = values[..., :3], values[..., 3:]
-    norm = np.linalg.norm(quaternion, axis=-1, keepdims=True)
-    return np.concatenate([quaternion / norm, translation], axis=-1)
-
-
-SE2 = Format("SE2", "x y theta", 3, se2_storage, (0, 1, 2))
-SE3 = Format("SE3", "x y z qx qy qz qw", 7, se3_storage, (3, 4, 5, 0, 1, 2))
-VERTEX = {"VERTEX_SE2": SE2, "VERTEX_SE3:QUAT": SE3}
-EDGE = {"EDGE_SE2": SE2, "EDGE_SE3:QUAT": SE3}
-
-
-@dataclass(frozen=True)
-class Record:
-    line: int
-    tag: str
-    ids: list[int]
-    values: list[float]
+    @property
+    def group(self) -> str:
+        """That of the poses."""
+        return next(name for name in self.vertices if name.startswith("SE"))
 
 
 def read_g2o(path: Path) -> Graph:
     """Read a pose graph; raise `G2oError` with the line number where the file is wrong."""
-    records: list[Record] = []
-    left_out: Counter[str] = Counter()
-    with path.open(encoding="utf-8", errors="replace") as lines:
-        for number, text in enumerate(lines, start=1):
-            tag, *words = text.partition("#")[0].split() or [""]
-            if tag in VERTEX or tag in EDGE or tag == "FIX":
-                records.append(parse_record(path, number, tag, words))
-            elif tag:
-                left_out[tag] += 1
-    return build_graph(path, records, dict(left_out))
+    # Some editors begin a file with a byte order mark.
+    return read_lines(path.name, path.read_text(encoding="utf-8-sig", errors="replace").split("\n"))
 
 
-def parse_record(path: Path, line: int, tag: str, words: Sequence[str]) -> Record:
-    where = f"{path.name}:{line}"
-    n_ids, n_values, layout = expected_layout(tag, len(words))
-    if len(words) != n_ids + n_values:
-        raise G2oError(
-            f"{where}: {tag} needs {n_ids + n_values} numbers ({layout}) but has {len(words)}. "
-            "Is the line cut short, or are two lines joined?"
-        )
-    try:
-        record = Record(line, tag, [int(w) for w in words[:n_ids]], [float(w) for w in words[n_ids:]])
-    except ValueError as error:
-        raise G2oError(f"{where}: {tag} needs numbers ({layout}), ids whole: {error}.") from None
-    if not np.all(np.isfinite(record.values)):
-        raise G2oError(f"{where}: {tag} has a number that is not finite. Remove or correct the line.")
-    if tag.endswith(":QUAT") and abs(np.linalg.norm(record.values[3:7]) - 1) > 0.01:
-        raise G2oError(
-            f"{where}: the quaternion of {tag} has length {np.linalg.norm(record.values[3:7]):.4g}, not 1. "
-            "The order is x y z qx qy qz qw."
-        )
-    return record
-
-
-def expected_layout(tag: str, found: int) -> tuple[int, int, str]:
-    """Ids, values, and their names on a line with this tag."""
-    if tag == "FIX":
-        return max(found, 1), 0, "id ..."
-    if tag in VERTEX:
-        return 1, VERTEX[tag].width, f"id {VERTEX[tag].values}"
-    k = len(EDGE[tag].tangent)
-    return 2, EDGE[tag].width + k * (k + 1) // 2, f"i j {EDGE[tag].values} and I11 I12 ... I{k}{k}"
-
-
-def build_graph(path: Path, records: Sequence[Record], left_out: dict[str, int]) -> Graph:
+def read_lines(name: str, lines: Sequence[str]) -> Graph:
+    """The graph of a file with this name and these lines."""
+    records = parse(name, lines)
     vertices = [r for r in records if r.tag in VERTEX]
-    edges = [r for r in records if r.tag in EDGE]
-    form = common_format(path, vertices, edges, left_out)
-    index = index_of_ids(path, vertices, records)
-    held = [index[v] for r in records if r.tag == "FIX" for v in r.ids]
-    values = np.array([e.values for e in edges])
-    graph = Graph(
-        group=form.group,
-        poses=form.to_storage(np.array([v.values for v in vertices])),
-        i=np.array([index[e.ids[0]] for e in edges]),
-        j=np.array([index[e.ids[1]] for e in edges]),
-        measurements=form.to_storage(values[:, : form.width]),
-        information=full_matrices(values[:, form.width :], form.tangent),
-        held=np.unique(held or [0]),
-        ids=np.array(list(index)),
-        left_out=left_out,
+    edges = [r for r in records if r.tag in EDGES]
+    require_parts(name, vertices, edges)
+    places = places_of_ids(name, vertices, records)
+    held = {v for r in records if r.tag == FIX for v in r.ids}
+    anchors = {r.ids[0] for r in edges if len(r.ids) == 1}
+    if not held | anchors:
+        held = {next(r.ids[0] for r in vertices if r.tag in POSE)}
+    require_connected(name, vertices, edges, held | anchors)
+    if held >= places.keys():
+        last = max(r.line for r in records if r.tag == FIX)
+        raise G2oError(f"{name}:{last}: every vertex is fixed, so there is nothing to solve. Remove a FIX.")
+    offsets = offsets_of_ids(name, records)
+    by_tag: defaultdict[str, list[Record]] = defaultdict(list)
+    for record in (*vertices, *edges):
+        by_tag[record.tag].append(record)
+    return Graph(
+        {VERTEX[t].manifold: vertices_of(VERTEX[t], r, held) for t, r in by_tag.items() if t in VERTEX},
+        {t: edges_of(name, EDGES[t], r, places, offsets) for t, r in by_tag.items() if t in EDGES},
+        lines,
     )
-    for row in np.flatnonzero(np.linalg.eigvalsh(graph.information)[:, 0] <= 0)[:1]:
+
+
+def written(graph: Graph, values: Mapping[str, Floats]) -> str:
+    """The graph's file with these values of its vertices; all other lines stay as they are."""
+    lines = list(graph.lines)
+    for tag, kind in VERTEX.items():
+        if kind.manifold not in graph.vertices:
+            continue
+        rows, own = kind.to_file(values[kind.manifold]), graph.vertices[kind.manifold]
+        for number, line, row in zip(own.ids, own.lines, rows, strict=True):
+            lines[line - 1] = " ".join([tag, str(number), *(f"{float(v)!r}" for v in row)])
+    return "\n".join(lines)
+
+
+def vertices_of(kind: Kind, records: Sequence[Record], held: set[int]) -> Vertices:
+    return Vertices(
+        np.array([r.ids[0] for r in records]),
+        kind.to_storage(np.array([r.values for r in records])),
+        np.array([r.ids[0] in held for r in records]),
+        np.array([r.line for r in records]),
+    )
+
+
+def edges_of(
+    name: str,
+    kind: EdgeKind,
+    records: Sequence[Record],
+    places: Mapping[int, int],
+    offsets: Mapping[int, Floats],
+) -> Edges:
+    values = np.array([r.values for r in records])
+    measured, upper = values[:, : kind.measured.width], values[:, kind.measured.width :]
+    information = full_matrices(upper, kind.measured.tangent)
+    for row in np.flatnonzero(~semidefinite(information))[:1]:
         raise G2oError(
-            f"{path.name}:{edges[row].line}: the information matrix is not positive definite. It is the "
+            f"{name}:{records[row].line}: the information matrix is not positive semidefinite. It is the "
             "inverse of a covariance; the line has the rows of its upper triangle."
         )
-    require_connected(path, graph)
-    return graph
-
-
-def common_format(
-    path: Path, vertices: Sequence[Record], edges: Sequence[Record], left_out: dict[str, int]
-) -> Format:
-    formats = {r.tag: (VERTEX | EDGE)[r.tag] for r in (*vertices, *edges)}
-    if not vertices or not edges:
-        unknown = f" Unknown tags: {', '.join(left_out)}." if left_out else ""
-        raise G2oError(
-            f"{path.name}: has {len(vertices)} poses and {len(edges)} edges; a pose graph needs both, "
-            f"{' or '.join(VERTEX)} lines and {' or '.join(EDGE)} lines.{unknown}"
-        )
-    if len({f.group for f in formats.values()}) > 1:
-        raise G2oError(f"{path.name}: mixes 2D and 3D ({', '.join(formats)}). Split the file.")
-    return VERTEX[vertices[0].tag]
-
-
-def index_of_ids(path: Path, vertices: Sequence[Record], records: Sequence[Record]) -> dict[int, int]:
-    """Ids need not be contiguous; poses keep the order of the file."""
-    index: dict[int, int] = {}
-    for number, vertex in enumerate(vertices):
-        if index.setdefault(vertex.ids[0], number) != number:
-            raise G2oError(f"{path.name}:{vertex.line}: pose {vertex.ids[0]} is there twice. Remove one.")
-    for record in records:
-        where = f"{path.name}:{record.line}: {record.tag}"
-        for missing in (v for v in record.ids if v not in index):
-            raise G2oError(f"{where} names pose {missing}, which has no vertex line. Add its initial pose.")
-        if record.tag in EDGE and record.ids[0] == record.ids[1]:
-            raise G2oError(f"{where} joins pose {record.ids[0]} to itself. Remove the line.")
-    return index
-
-
-def require_connected(path: Path, graph: Graph) -> None:
-    """Each pose needs a chain of edges to a held pose, or nothing determines it."""
-    n = len(graph.poses)
-    links = coo_array((np.ones(len(graph.i)), (graph.i, graph.j)), shape=(n, n))
-    _, part = connected_components(links, directed=False)
-    loose = graph.ids[~np.isin(part, part[graph.held])]
-    if loose.size:
-        raise G2oError(
-            f"{path.name}: {loose.size} poses, the first with id {loose[0]}, are joined by no chain of edges "
-            f"to a held pose. Remove them, or add edges, or `FIX {graph.ids[graph.held[0]]} {loose[0]}`."
-        )
+    z = kind.measured.to_storage(measured)
+    if kind.offset and len(kind.measured.tangent) == 6:
+        z, information = of_body(z, information, offsets_of(name, records, offsets))
+    elif kind.offset and len(kind.ends) == 2:
+        z, information = point_of_body(z, information, offsets_of(name, records, offsets))
+    elif kind.offset:
+        offsets_of(name, records, offsets)  # the format asks for it, the measurement is of the body itself
+    return Edges(np.array([[places[v] for v in r.ids] for r in records]), z, information)
 
 
 def full_matrices(upper: Floats, order: Sequence[int]) -> Floats:
@@ -207,3 +144,132 @@ def full_matrices(upper: Floats, order: Sequence[int]) -> Floats:
     full[:, rows, columns] = upper
     full[:, columns, rows] = upper
     return full[:, order][:, :, order]
+
+
+# --- information matrices: units differ (1/m^2, 1/rad^2), so each is judged on its own scale ---------------
+
+
+def scales(information: Floats) -> tuple[Floats, Floats]:
+    """The square root s (E, k) of the diagonal, and I / (s s^T) (E, k, k), with 1 (or 0) on its diagonal."""
+    s = np.sqrt(np.maximum(np.diagonal(information, axis1=1, axis2=2), 0))
+    inverse = np.divide(1, s, out=np.zeros_like(s), where=s > 0)
+    return s, inverse[:, :, None] * information * inverse[:, None, :]
+
+
+def semidefinite(information: Floats) -> NDArray[np.bool_]:
+    """Which matrices (E, k, k) are, up to the digits that files print."""
+    s, scaled = scales(information)
+    restored = s[:, :, None] * scaled * s[:, None, :]
+    # Where a diagonal entry is 0 the whole row is, or the matrix is indefinite.
+    whole = np.all(np.isclose(restored, information, rtol=1e-9, atol=0), axis=(1, 2))
+    return whole & (np.linalg.eigvalsh(scaled)[:, 0] >= -ROUNDING)
+
+
+def roots(information: Floats) -> Floats:
+    """Upper triangular S (E, k, k) with S^T S = information, which may be singular."""
+    s, scaled = scales(information)
+    values, vectors = np.linalg.eigh(scaled)
+    factor = np.sqrt(np.maximum(values, 0))[:, :, None] * vectors.transpose(0, 2, 1) * s[:, None, :]
+    return np.linalg.qr(factor, mode="r")
+
+
+# --- a sensor beside the body's origin: the measurement as one of the body ----------------------------------
+
+
+def of_body(z: Floats, information: Floats, offset: Floats) -> tuple[Floats, Floats]:
+    """Log(z^-1 x o) = Ad(o^-1) Log((z o^-1)^-1 x): a prior of the pose x o as one of x."""
+    inverse = liegen_groups.se3_inverse(offset)
+    return liegen_groups.se3_compose(z, inverse), turned(information, liegen_groups.se3_adjoint(inverse))
+
+
+def point_of_body(z: Floats, information: Floats, offset: Floats) -> tuple[Floats, Floats]:
+    """(x o)^-1 p - z = R_o^T (x^-1 p - o z)."""
+    rotation = liegen_groups.se3_adjoint(offset)[:, :3, :3]
+    return liegen_groups.se3_act(offset, z), turned(information, rotation.transpose(0, 2, 1))
+
+
+def turned(information: Floats, matrix: Floats) -> Floats:
+    """Information of v, given that of `matrix` v."""
+    found = matrix.transpose(0, 2, 1) @ information @ matrix
+    return (found + found.transpose(0, 2, 1)) / 2
+
+
+# --- what a file must have --------------------------------------------------------------------------------
+
+
+def require_parts(name: str, vertices: Sequence[Record], edges: Sequence[Record]) -> None:
+    poses = [r for r in vertices if r.tag in POSE]
+    if not poses or not edges:
+        raise G2oError(
+            f"{name}: has {len(poses)} poses and {len(edges)} edges; a pose graph needs both, "
+            f"{' or '.join(POSE)} lines and lines such as {' or '.join(list(EDGES)[:2])}."
+        )
+    spaces = [VERTEX[r.tag].space if r.tag in VERTEX else EDGES[r.tag].measured.space for r in poses + edges]
+    spaces += [VERTEX[r.tag].space for r in vertices]
+    for record, space in zip((*poses, *edges, *vertices), spaces, strict=True):
+        if space != spaces[0]:
+            raise G2oError(
+                f"{name}:{record.line}: mixes 2D and 3D: {record.tag} in a file with {poses[0].tag}. "
+                "Split the file."
+            )
+
+
+def places_of_ids(name: str, vertices: Sequence[Record], records: Sequence[Record]) -> dict[int, int]:
+    """Where each id is among the vertices with its tag; ids need not be contiguous."""
+    tags: dict[int, str] = {}
+    places: dict[int, int] = {}
+    counts: defaultdict[str, int] = defaultdict(int)
+    for vertex in vertices:
+        key = vertex.ids[0]
+        if key in tags:
+            raise G2oError(f"{name}:{vertex.line}: vertex {key} is there twice. Remove one.")
+        tags[key], places[key] = vertex.tag, counts[vertex.tag]
+        counts[vertex.tag] += 1
+    for record in records:
+        where = f"{name}:{record.line}: {record.tag}"
+        ids = record.ids if record.tag in EDGES or record.tag == FIX else ()
+        for missing in (v for v in ids if v not in tags):
+            raise G2oError(f"{where} names vertex {missing}, which has no line. Add its initial value.")
+        for key, tag in zip(ids, EDGES[record.tag].ends if record.tag in EDGES else (), strict=False):
+            if tags[key] != tag:
+                raise G2oError(f"{where} names vertex {key}, a {tags[key]}, where it needs a {tag}.")
+        if record.tag in EDGES and len(set(ids)) < len(ids):
+            raise G2oError(f"{where} joins vertex {ids[0]} to itself. Remove the line.")
+    return places
+
+
+def offsets_of_ids(name: str, records: Sequence[Record]) -> dict[int, Floats]:
+    found: dict[int, Floats] = {}
+    for record in (r for r in records if r.tag == OFFSET):
+        if record.ids[0] in found:
+            raise G2oError(f"{name}:{record.line}: {OFFSET} {record.ids[0]} is there twice. Remove one.")
+        found[record.ids[0]] = POSE3.to_storage(np.array(record.values))
+    return found
+
+
+def offsets_of(name: str, records: Sequence[Record], offsets: Mapping[int, Floats]) -> Floats:
+    for record in records:
+        if record.offset not in offsets:
+            raise G2oError(
+                f"{name}:{record.line}: {record.tag} names offset {record.offset}, which has no line. "
+                f"For a sensor at the origin of the body add `{OFFSET} {record.offset} 0 0 0 0 0 0 1`."
+            )
+    return np.array([offsets[r.offset] for r in records if r.offset is not None])
+
+
+def require_connected(
+    name: str, vertices: Sequence[Record], edges: Sequence[Record], anchors: set[int]
+) -> None:
+    """Each vertex needs a chain of edges to one that is held or has a prior, or nothing determines it."""
+    number = {r.ids[0]: k for k, r in enumerate(vertices)}
+    pairs = np.array([[number[v] for v in r.ids] for r in edges if len(r.ids) == 2]).reshape(-1, 2)
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(number), len(number)))
+    _, part = connected_components(links, directed=False)
+    loose = np.flatnonzero(~np.isin(part, part[[number[v] for v in anchors]]))
+    if loose.size:
+        first = vertices[loose[0]]
+        raise G2oError(
+            f"{name}:{first.line}: {loose.size} vertices, the first with id {first.ids[0]}, are joined by no "
+            f"chain of edges to a held one. Remove them, or add edges, or "
+            f"`FIX {' '.join(str(v) for v in (min(anchors), first.ids[0]))}`."
+        )

@@ -1,20 +1,22 @@
 """Solve a pose graph with compiled factors: `python docs/examples/pose_graph.py [FILE.g2o]`.
 
-A pose graph has unknown poses x_1 ... x_N in a world frame, and edges: each is a measurement z of pose j in
-the frame of pose i. Its residual is the library's between factor, r = Log(z^-1 x_i^-1 x_j), whitened by the
-noise of the edge: `between_se3.whitened(noise="full")` (2D: `between_se2`). The best poses minimise
+A pose graph has unknown poses x_1 ... x_N in a world frame, perhaps points, and edges: each is a measurement.
+An edge between poses is a measurement z of pose j in the frame of pose i. Its residual is the library's
+between factor, r = Log(z^-1 x_i^-1 x_j), whitened by the noise of the edge:
+`between_se3.whitened(noise="full")` (2D: `between_se2`). `equations.py` has those of the other edges. The
+best poses and points minimise
 
     error = 1/2 sum |S r|^2,    S^T S = information matrix of the edge.
 
-Edges alone leave the whole graph free to move, so a prior factor of 1 mm and 1 mrad holds the first pose.
+Edges alone leave the whole graph free to move, so vertices of `FIX` lines are no unknowns; where there is no
+such line, and no prior, the first pose is held.
 
 What a solver of your own takes from here is short:
 
-1. `linearise`: ONE call of the compiled factor gives the whitened residuals and Jacobians of all edges. It
-   reads the poses through the edge list, and writes `res_D_x`, a k x k block in the columns of pose i, and
-   `res_D_y`, one in the columns of pose j, to where the sparse matrix has them.
-2. `liegen.SparseSolver` solves (J^T J + damping) d = -J^T r; what the pattern decides is done once.
-3. `retract`: the Jacobians are those of x Exp(d), so that is how a step d is applied (3D: rotation first).
+1. `system_of` in `equations.py`: `liegen.NormalEquations` adds up H = J^T J and g = J^T r of all edges, in
+   compiled code. It reads the poses through the edge list; a block number of -1 holds a vertex.
+2. `liegen.SparseSolver` solves (H + damping diag H) d = -g; what the pattern decides is done once.
+3. `retracted`: the Jacobians are those of x Exp(d), so that is how a step d is applied (3D: rotation first).
 
 Without a file it makes a sphere: a robot winds up around it, with noisy odometry, and measures where it is
 relative to the ring below.
@@ -27,113 +29,26 @@ there is no C compiler the factors run as NumPy code.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
-from g2o import Floats, G2oError, Graph, read_g2o
-from scipy.sparse import bsr_array
+from equations import DIM, Values, retracted, start, system_of
+from g2o import Floats, Graph, read_g2o, written
+from g2o_lines import G2oError
+from picture import draw, require_picture
+from sphere import made_sphere
 
 import liegen
-from liegen import library
+from liegen.runtime.normal_equations import Terms
 
-PRIOR_SIGMA = 1e-3  # metres and radians
-SPHERE_SIGMA = np.array([0.03, 0.03, 0.03, 0.1, 0.1, 0.1])  # radians, metres
 FIRST_DAMPING, SMALLEST_DAMPING, LARGEST_DAMPING = 1e-6, 1e-12, 1e6  # relative to the diagonal of J^T J
 
 
-# --- the groups: storage and tangent order are those of the generated functions ---------------------------
-
-
-def compose_se3(a: Floats, b: Floats) -> Floats:
-    """Poses (..., 7) = (qx, qy, qz, qw, x, y, z); the product's quaternion is made unit again."""
-    u, w, v, s = a[..., :3], a[..., 3:4], b[..., :3], b[..., 3:4]
-    scalar = w * s - np.sum(u * v, axis=-1, keepdims=True)
-    q = np.concatenate([w * v + s * u + np.cross(u, v), scalar], axis=-1)
-    q /= np.linalg.norm(q, axis=-1, keepdims=True)
-    return np.concatenate([q, a[..., 4:] + rotate(a[..., :4], b[..., 4:])], axis=-1)
-
-
-def inverse_se3(a: Floats) -> Floats:
-    q = a[..., :4] * [-1, -1, -1, 1]
-    return np.concatenate([q, -rotate(q, a[..., 4:])], axis=-1)
-
-
-def rotate(q: Floats, p: Floats) -> Floats:
-    twice = 2 * np.cross(q[..., :3], p)
-    return p + q[..., 3:4] * twice + np.cross(q[..., :3], twice)
-
-
-def exp_se3(d: Floats) -> Floats:
-    """Exp of (rotation vector, translation), full accuracy at every angle, 0 included."""
-    phi, rho = d[..., :3], d[..., 3:]
-    theta = np.linalg.norm(phi, axis=-1, keepdims=True)
-    half = np.sinc(theta / (2 * np.pi)) / 2  # sin(theta/2) / theta
-    # (theta - sin theta) / theta^3; digits lost near 0 do not matter, it multiplies a vector of size theta^2.
-    c3 = (1 - np.sinc(theta / np.pi)) / np.where(theta**2 > 0, theta**2, 1)
-    turn = np.cross(phi, rho)
-    translation = rho + 2 * half**2 * turn + c3 * np.cross(phi, turn)
-    return np.concatenate([half * phi, np.cos(theta / 2), translation], axis=-1)
-
-
-def retract_se3(x: Floats, d: Floats) -> Floats:
-    return compose_se3(x, exp_se3(d))
-
-
-def retract_se2(x: Floats, d: Floats) -> Floats:
-    """Poses (..., 4) = (cos, sin, x, y), d = (x, y, angle); complex numbers are rotations and points."""
-    rotation, position = x[..., 0] + 1j * x[..., 1], x[..., 2] + 1j * x[..., 3]
-    move, angle = d[..., 0] + 1j * d[..., 1], d[..., 2]
-    chord = np.sinc(angle / (2 * np.pi)) * np.exp(0.5j * angle)  # (e^(i angle) - 1) / (i angle)
-    position = position + rotation * chord * move
-    rotation = rotation * np.exp(1j * angle)
-    rotation /= np.abs(rotation)
-    return np.stack([rotation.real, rotation.imag, position.real, position.imag], axis=-1)
-
-
-@dataclass(frozen=True)
-class Group:
-    dim: int  # of the tangent space
-    space: int  # of a position, the last numbers of a pose
-    retract: Callable[[Floats, Floats], Floats]
-    between: liegen.Function  # of x and y, given z
-    prior: liegen.Function  # of x, given z
-
-
-GROUPS = {
-    "SE2": Group(3, 2, retract_se2, library.between_se2, library.prior_se2),
-    "SE3": Group(6, 3, retract_se3, library.between_se3, library.prior_se3),
-}
-
-
 # --- the solver -------------------------------------------------------------------------------------------
-
-
-def linearise(graph: Graph) -> Callable[[Floats], tuple[bsr_array, Floats]]:
-    """The function poses -> (J, r) of all edges and priors, whitened. What never changes is prepared once."""
-    group = GROUPS[graph.group]
-    k, n_edges, n_held = group.dim, len(graph.i), len(graph.held)
-    edges = liegen.compile(group.between.whitened(noise="full")).indexed(x=graph.i, y=graph.j)
-    priors = liegen.compile(group.prior.whitened(noise="isotropic")).indexed(x=graph.held)
-    whiten = np.linalg.cholesky(graph.information).transpose(0, 2, 1)  # L^T: information = L L^T
-    held_at = graph.poses[graph.held]
-    # J in k x k blocks: the row of an edge has two, in columns i and j, the row of a prior has one.
-    columns = np.concatenate([np.stack([graph.i, graph.j], axis=1).ravel(), graph.held])
-    row_starts = np.concatenate([np.arange(0, 2 * n_edges, 2), 2 * n_edges + np.arange(n_held + 1)])
-    shape = (k * (n_edges + n_held), k * len(graph.poses))
-
-    def at(poses: Floats) -> tuple[bsr_array, Floats]:
-        blocks, r = np.empty((len(columns), k, k)), np.empty((n_edges + n_held, k))
-        D = blocks[: 2 * n_edges].reshape(n_edges, 2, k, k)
-        out = (r[:n_edges], D[:, 0], D[:, 1])
-        edges.jacobians(poses, poses, z=graph.measurements, sqrt_info=whiten, out=out)
-        out = (r[n_edges:], blocks[2 * n_edges :])
-        priors.jacobians(poses, z=held_at, sqrt_info=[1 / PRIOR_SIGMA], out=out)
-        return bsr_array((blocks, columns, row_starts), shape=shape), r.ravel()
-
-    return at
 
 
 @dataclass(frozen=True)
@@ -141,11 +56,12 @@ class Iterate:
     """Where the solver stands after one linear system."""
 
     number: int
-    poses: Floats
+    values: Values
     error: float
     decrease: float = 0.0  # of the error, relative; negative: the step was refused
     step: float = 0.0  # norm of d
     damping: float = FIRST_DAMPING  # of the next system
+    loose: int | None = None  # a vertex that the edges leave free, known at the end
     converged: bool = False
 
 
@@ -155,120 +71,154 @@ def levenberg_marquardt(graph: Graph, tol: float = 1e-9, max_iterations: int = 1
     Converged: a step changes, or by its linear model would change, the error by a share of at most `tol`, or
     no number in the step is larger than `tol`.
     """
-    group, at, solver = GROUPS[graph.group], linearise(graph), liegen.SparseSolver()
-    jacobian, r = at(graph.poses)
-    now = Iterate(0, graph.poses, half_square(r))
+    at, solver = system_of(graph), liegen.SparseSolver()
+    terms = at(start(graph))
+    now = Iterate(0, start(graph), terms.cost)
     if not np.isfinite(now.error):
         raise RuntimeError("the error at the start is not a number: check the poses and measurements")
+    require_measured(graph, terms.H)
+    if not len(terms.g):
+        now = replace(now, converged=True)
     yield now
     while not now.converged and now.number < max_iterations:
-        gradient = jacobian.T @ r
-        d = solver(jacobian.T @ jacobian, -gradient, now.damping)
-        poses = group.retract(now.poses, d.reshape(-1, group.dim))
-        jacobian_new, r_new = at(poses)
-        error = half_square(r_new)
-        decrease = (now.error - error) / now.error if now.error > 0 else 0.0
-        negligible = -(gradient @ d) <= tol * now.error or np.abs(d).max() <= tol
+        d = damped_step(solver, terms, now.damping)
+        values = retracted(graph, now.values, d)
+        new = at(values)
+        decrease = (now.error - new.cost) / now.error if now.error > 0 else 0.0
+        negligible = -(terms.g @ d) <= tol * now.error or np.abs(d).max() <= tol
         now = replace(now, number=now.number + 1, decrease=decrease, step=float(np.linalg.norm(d)))
-        if error <= now.error:
-            jacobian, r = jacobian_new, r_new
+        if new.cost <= now.error:
+            terms = new
             damping = max(now.damping / 10, SMALLEST_DAMPING)
             converged = bool(negligible or decrease <= tol)
-            now = replace(now, poses=poses, error=error, damping=damping, converged=converged)
+            now = replace(now, values=values, error=new.cost, damping=damping, converged=converged)
         else:  # also when it is not a number
             now = replace(now, damping=now.damping * 10, converged=bool(negligible))
         if now.damping > LARGEST_DAMPING:
             raise RuntimeError(f"no step decreases the error {now.error:.6g}: is a measurement far off?")
-        yield now
+        yield replace(now, loose=loose_vertex(graph, terms.H)) if now.converged else now
 
 
-def half_square(r: Floats) -> float:
-    return 0.5 * float(r @ r)
+def damped_step(solver: liegen.SparseSolver, terms: Terms, damping: float) -> Floats:
+    """The step; where H is singular and the damping too small for its rounding, with more of it."""
+    while True:
+        try:
+            return solver(terms.H, -terms.g, damping)
+        except np.linalg.LinAlgError:
+            damping *= 10
+            if damping > LARGEST_DAMPING:
+                raise
 
 
-# --- a graph to solve without a file, a picture, the command line -----------------------------------------
+def require_measured(graph: Graph, H: Any) -> None:
+    """Each number of a step needs an edge that depends on it; raises RuntimeError with the vertex."""
+    missing = np.flatnonzero(H.diagonal() == 0)
+    if missing.size:
+        vertex = owner(graph, missing[0])
+        raise RuntimeError(
+            f"no edge measures all of vertex {vertex}: the information of its edges is 0 in some direction. "
+            f"Add an edge or a prior, or `FIX {vertex}`."
+        )
 
 
-def made_sphere(rings: int = 20, per_ring: int = 25, seed: int = 1) -> Graph:
-    """A sphere of radius 10 m; the initial poses are dead reckoning from the true first pose."""
-    n = rings * per_ring
-    rng = np.random.default_rng(seed)
-    longitude = 2 * np.pi * np.arange(n) / per_ring
-    latitude = np.radians(np.linspace(-80, 80, n))
-    about_z = exp_se3(longitude[:, None] * [0, 0, 1, 0, 0, 0])
-    about_y = exp_se3(latitude[:, None] * [0, -1, 0, 0, 0, 0])
-    true = compose_se3(compose_se3(about_z, about_y), exp_se3(np.tile([0.0, 0, 0, 10, 0, 0], (n, 1))))
+def loose_vertex(graph: Graph, H: Any) -> int | None:
+    """The vertex that moves most in a direction that no edge measures, to rounding; None without one.
 
-    i = np.concatenate([np.arange(n - 1), np.arange(n - per_ring)])
-    j = np.concatenate([np.arange(1, n), np.arange(per_ring, n)])
-    noise = rng.normal(size=(len(i), 6)) * SPHERE_SIGMA
-    # Noise is in the frame of the measurement, as the residual is: z = x_i^-1 x_j Exp(noise).
-    z = compose_se3(compose_se3(inverse_se3(true[i]), true[j]), exp_se3(noise))
-
-    poses = [true[0]]
-    for odometry in z[: n - 1]:
-        poses.append(compose_se3(poses[-1], odometry))
-    information = np.tile(np.diag(SPHERE_SIGMA**-2.0), (len(i), 1, 1))
-    return Graph("SE3", np.array(poses), i, j, z, information, held=np.array([0]), ids=np.arange(n))
+    Inverse iteration on H, scaled to a diagonal of 1, for its smallest eigenvalue.
+    """
+    solver, scale = liegen.SparseSolver(), np.sqrt(H.diagonal())
+    v = np.random.default_rng(0).normal(size=len(scale))
+    growth = 0.0
+    for _ in range(3):
+        try:
+            found = scale * solver(H, scale * v / np.linalg.norm(v), SMALLEST_DAMPING)
+        except np.linalg.LinAlgError:
+            return None
+        growth, v = float(np.linalg.norm(found)), found
+    return owner(graph, int(np.argmax(np.abs(v)))) if growth > 0.5 / SMALLEST_DAMPING else None
 
 
-def draw(graph: Graph, before: Iterate, after: Iterate, out: Path) -> None:
-    """Two panels; edges between neighbours (odometry) in blue, all others (loop closures) in orange."""
-    from matplotlib.figure import Figure
+def owner(graph: Graph, place: int) -> int:
+    """The id of the vertex that has this number of a step."""
+    ids = [np.repeat(own.ids[~own.held], DIM[name]) for name, own in graph.vertices.items()]
+    return int(np.concatenate(ids)[place])
 
-    space = GROUPS[graph.group].space
-    figure = Figure(figsize=(12, 6), layout="constrained")
-    neighbours = np.abs(graph.i - graph.j) == 1
-    for panel, (title, state) in enumerate([("before", before), ("after", after)], start=1):
-        axes = figure.add_subplot(1, 2, panel, projection="3d" if space == 3 else None)
-        ends = state.poses[:, -space:]
-        gap = np.full((len(graph.i), space), np.nan)  # lifts the pen between two edges
-        lines = np.stack([ends[graph.i], ends[graph.j], gap], axis=1)
-        axes.plot(*lines[~neighbours].reshape(-1, space).T, color="tab:orange", linewidth=0.4)
-        axes.plot(*lines[neighbours].reshape(-1, space).T, color="tab:blue", linewidth=0.7)
-        axes.set_title(f"{title}: error {state.error:.8g}")
-        axes.set_aspect("equal")
-    figure.savefig(out, dpi=120, bbox_inches="tight")
+
+# --- the command line ---------------------------------------------------------------------------------------
+
+
+def between_0_and_1(_context: click.Context, parameter: click.Parameter, value: float) -> float:
+    if not 0 <= value < 1:  # also what is no number
+        raise click.BadParameter(f"{value} is not in the range 0<=x<1.", param=parameter)
+    return value
 
 
 @click.command(help="Solve the pose graph in FILE (.g2o, 2D or 3D); without FILE, a made sphere.")
 @click.argument("file", required=False, type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--output", type=click.Path(dir_okay=False, path_type=Path), help="Solved graph, a .g2o file.")
 @click.option("--out", default="pose_graph.png", show_default=True, help="Picture, before and after.")
-@click.option("--tol", default=1e-9, show_default=True, help="Relative change of the error to stop at.")
-@click.option("--max-iterations", default=100, show_default=True)
-def main(file: Path | None, out: str, tol: float, max_iterations: int) -> None:
+@click.option("--no-picture", is_flag=True, help="Solve without matplotlib.")
+@click.option(
+    "--tol",
+    default=1e-9,
+    show_default=True,
+    callback=between_0_and_1,
+    help="Relative change of the error to stop at.",
+)
+@click.option("--max-iterations", default=100, show_default=True, type=click.IntRange(0))
+def main(
+    file: Path | None, output: Path | None, out: str, no_picture: bool, tol: float, max_iterations: int
+) -> None:
     try:
+        if not no_picture:
+            require_picture(Path(out))
+        if output and not output.absolute().parent.is_dir():
+            raise G2oError(f"--output {output}: there is no folder {output.parent}; make it first.")
         graph = read_g2o(file) if file else made_sphere()
         click.echo(describe(graph, file))
         first, last = run(graph, tol, max_iterations)
-        draw(graph, first, last, Path(out))
+        if output:
+            output.write_text(written(graph, last.values), encoding="utf-8")
+            click.echo(f"solved graph: {output}")
+        if not no_picture:
+            draw(graph, (first.values, first.error), (last.values, last.error), Path(out))
+            click.echo(f"picture: {out}")
     except (G2oError, RuntimeError, OSError, np.linalg.LinAlgError) as error:
         raise click.ClickException(str(error)) from error
-    click.echo(f"picture: {out}")
     if not last.converged:
         raise click.ClickException(f"not converged in {max_iterations} iterations: raise --max-iterations")
 
 
 def describe(graph: Graph, file: Path | None) -> str:
-    n, e, k = len(graph.poses), len(graph.i), GROUPS[graph.group].dim
-    size = f"{graph.group}, {n} poses, {e} edges"
+    vertices, e = graph.vertices, sum(len(edges.ends) for edges in graph.edges.values())
+    poses = vertices[graph.group]
+    n, k = len(poses.ids), DIM[graph.group]
+    points = "".join(f", {len(v.ids)} points" for name, v in vertices.items() if name != graph.group)
+    size = f"{graph.group}, {n} poses{points}, {e} edges"
     if file is None:
         # k residuals of unit variance an edge, less the k that each free pose fits.
         return f"no FILE, so a made sphere: {size}; its noise makes about {k * (e - n + 1) / 2:.0f} of error"
-    left_out = "".join(f"\nleft out: {count} lines {tag}" for tag, count in graph.left_out.items())
-    return f"{file.name}: {size}{left_out}"
+    held = [v for own in vertices.values() for v in own.ids[own.held]]
+    more = f" and {len(held) - 5} more" if len(held) > 5 else ""
+    return f"{file.name}: {size}\nheld: {', '.join(map(str, held[:5])) or 'none, there are priors'}{more}"
 
 
 def run(graph: Graph, tol: float, max_iterations: int) -> tuple[Iterate, Iterate]:
     """Solve, with a line printed for each iteration; returns the first and the last."""
-    start = time.perf_counter()
+    begin = time.perf_counter()
     click.echo("iteration           error   decrease       step    damping")
     history: list[Iterate] = []
     for now in levenberg_marquardt(graph, tol, max_iterations):
         history.append(now)
-        numbers = f"{now.error:15.8g} {now.decrease:10.2e} {now.step:10.2e} {now.damping:10.0e}"
-        click.echo(f"{now.number:9d} {numbers}")
-    click.echo(f"{history[-1].number} iterations in {time.perf_counter() - start:.2f} s")
+        columns = f"{now.error:15.8g} {now.decrease:10.2e} {now.step:10.2e} {now.damping:10.0e}"
+        click.echo(f"{now.number:9d} {columns}")
+    click.echo(f"{history[-1].number} iterations in {time.perf_counter() - begin:.2f} s")
+    if history[-1].loose is not None:
+        click.echo(
+            f"note: the edges leave vertex {history[-1].loose} free in some direction: "
+            "other values fit as well",
+            err=True,
+        )
     return history[0], history[-1]
 
 
