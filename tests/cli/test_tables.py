@@ -41,7 +41,7 @@ def on_terminal(columns, *command):
     return re.sub(r"\x1b\[[0-9;]*m", "", printed.decode()).replace("\r\n", "\n")
 
 
-@pytest.mark.parametrize("columns", [80, 100, 200])
+@pytest.mark.parametrize("columns", [68, 80, 100, 200])
 def test_numbers_are_whole(columns):
     text = on_terminal(columns, sys.executable, "-c", TABLE)
     assert "…" not in text
@@ -50,6 +50,17 @@ def test_numbers_are_whole(columns):
     assert max(map(len, text.splitlines())) <= columns
     folded = "".join(line.split()[0] for line in text.splitlines()[2:-1] if line.split())
     assert "a_factor_with_a_rather_long_name" in folded.replace("─", "")
+
+
+@pytest.mark.parametrize("columns", [20, 50, 60])
+def test_rows_in_lines_where_columns_do_not_fit(columns):
+    first, second = on_terminal(columns, sys.executable, "-c", TABLE).strip().split("\n\n")
+    numbers = "1.25e-16", "8.50e-16", "3.75e-11", "2.00", "128", "12"
+    titles = "value", "Jacobian", "differences", "slope", "samples", "left out"
+    lines = [f"{title}: {number}" for title, number in zip(titles, numbers, strict=True)]
+    assert second.splitlines() == ["factor: b", "checks: 9 passed", *lines]
+    assert first.splitlines()[0] == "factor: a_factor_with_a_rather_long_name"
+    assert first.splitlines()[2:] == lines
 
 
 def test_verify_fits_80_columns():

@@ -1,4 +1,4 @@
-"""Tables: ruled on a terminal, plain columns anywhere else. Numbers are never cut."""
+"""Tables: ruled on a terminal, plain columns anywhere else, lines where it is narrow. Numbers are whole."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ def table(titles: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collec
 def _ruled(
     titles: Sequence[str], content: Sequence[Sequence[str]], right: Collection[int], widths: Sequence[int]
 ) -> None:
-    """Where the terminal is narrow, texts are folded, titles of numbers parted, empty columns left out."""
+    """Where the terminal is narrow, texts are folded, titles of numbers parted, empty columns left out.
+
+    Where that is not enough, each row stands in lines of its own.
+    """
     from rich.box import SIMPLE_HEAD
     from rich.console import Console
     from rich.table import Table
@@ -41,13 +44,24 @@ def _ruled(
     narrow = sum(widths) + _GAP * (len(widths) - 1) > console.width
     kept = [k for k in range(len(titles)) if not narrow or any(row[k] for row in content) or not content]
     gap = 0 if narrow else _GAP - 1
+    longest = [max((len(row[k]) for row in content), default=0) for k in range(len(titles))]
+    shown = [
+        parted(title, max(cells, _NARROW)) if narrow and k in right else title
+        for k, (title, cells) in enumerate(zip(titles, longest, strict=True))
+    ]
+    least = [
+        max(longest[k], *map(len, shown[k].split("\n"))) if k in right else min(longest[k], _NARROW)
+        for k in kept
+    ]
+    if narrow and sum(least) + len(least) - 1 > console.width:
+        for row in content:
+            click.echo("\n".join(printable(f"{titles[k]}: {row[k]}") for k in kept) + "\n")
+        return
     ruled = Table(box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, gap, 0, 0))
     for k in kept:
         number = k in right
-        cells = max((len(row[k]) for row in content), default=0)
-        title = parted(titles[k], max(cells, _NARROW)) if narrow and number else titles[k]
         ruled.add_column(
-            title, justify="right" if number else "left", no_wrap=number or not narrow, overflow="fold"
+            shown[k], justify="right" if number else "left", no_wrap=number or not narrow, overflow="fold"
         )
     for row in content:
         ruled.add_row(*(Text(row[k]) for k in kept))
