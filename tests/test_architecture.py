@@ -15,7 +15,8 @@ LAYERS = (
     "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton",
     "arguments", "define", "decorate",
     "samples", "library", "modules", "user_code", "sources", "emit",
-    "subprocesses", "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain", "cli",
+    "temporary", "subprocesses", "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain",
+    "cli",
 )  # fmt: skip
 #: The lazy package root names everything.
 ROOT_FILES = ("__init__", "__main__")

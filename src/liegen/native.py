@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import importlib.util
 import os
 import platform
@@ -96,26 +97,37 @@ def cores() -> int:
     return len(affinity(0)) if affinity else os.cpu_count() or 1
 
 
-def compile_shared(
-    sources: Sequence[Path], library: Path, flags: Sequence[str], *, what: str = "compiling C"
-) -> None:
+def compile_shared(sources: Sequence[Path], library: Path, flags: Sequence[str], *, what: str = "") -> None:
     """Compile C files, side by side on all cores, to one shared object; objects stay in its folder.
 
-    A terminal is told ``what`` takes longer than 2 s. Raises ToolError without a compiler, with its own words
-    where it refuses, where it runs too long, and where it leaves no shared object.
+    A terminal is told ``what`` takes longer than 2 s, by default the library's name. The compiler's temporary
+    files stand in that folder too. Raises ToolError without a compiler, with its own words where it refuses,
+    where it runs too long, and where it leaves no shared object.
     """
-    command = required_compiler()
+    command, what = required_compiler(), what or f"compiling {library.stem}"
     objects = [library.parent / f"{path.name}.o" for path in sources]
     jobs = [
         [*command, *flags, "-fPIC", "-c", str(source), "-o", str(made)]
         for source, made in zip(sources, objects, strict=True)
     ]
-    for done in run_all(jobs, what=what, at_once=cores()):
+    env = {"TMPDIR": str(library.parent)}
+    for done in run_all(jobs, what=what, at_once=cores(), env=env):
         _check(command, done)
     _check_made(command, objects)
     linked = [*command, *flags, "-shared", "-o", str(library), *map(str, objects), "-lm"]
-    _check(command, run(linked, what=what))
+    _check(command, run(linked, what=what, env=env))
     _check_made(command, [library])
+
+
+def load_shared(library: Path) -> ctypes.CDLL:
+    """A shared object that :func:`compile_shared` made. Raises ToolError where the system cannot load it."""
+    try:
+        return ctypes.CDLL(str(library))
+    except OSError as error:
+        raise ToolError(
+            f"{shown(required_compiler())} made a shared object that cannot be loaded "
+            f"({shortened(str(error))}); set CC to a compiler for this machine"
+        ) from error
 
 
 def _check(command: Sequence[str], done: Done) -> None:

@@ -29,6 +29,10 @@ MOST_OUTPUT = 32 << 20
 _PAUSE = 0.005
 
 
+class TimeLimitError(ToolError):
+    """A program ran longer than it may, and was stopped."""
+
+
 @dataclass(frozen=True)
 class Done:
     """What became of a program: its exit code (negative: the signal that ended it) and what it printed."""
@@ -113,8 +117,8 @@ def run_all(
 
     ``what`` is told on a terminal when it takes longer than 2 s ("compiling between_se3"). They read nothing,
     and what they print is decoded whatever it is. An exception, Ctrl-C among them, ends them all with
-    everything that they started. Raises ToolError for a program that cannot be started, prints without end,
-    or runs longer than ``limit`` (by default 600 s, or what LIEGEN_TOOL_SECONDS says).
+    everything that they started. Raises ToolError for a program that cannot be started or prints without
+    end, TimeLimitError where it runs longer than ``limit`` (by default 600 s, or LIEGEN_TOOL_SECONDS).
     """
     seconds = time_limit() if limit is None else limit
     waiting = list(enumerate(tuple(command) for command in commands))
@@ -168,7 +172,7 @@ def _started(
 
 def _check(job: _Running, seconds: float) -> None:
     if time.monotonic() - job.start > seconds:
-        raise ToolError(
+        raise TimeLimitError(
             f"{shown(job.command)} did not end within {seconds:g} s and was stopped; "
             f"set {LIMIT_VARIABLE} to give it more time, or CC to use another compiler"
         )

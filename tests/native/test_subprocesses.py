@@ -14,7 +14,7 @@ import pytest
 
 from liegen import subprocesses
 from liegen.errors import ToolError
-from liegen.native import compile_shared, compiler_version, find_compiler
+from liegen.native import compile_shared, compiler_version, find_compiler, load_shared
 from liegen.subprocesses import run, run_all
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="shell scripts")
@@ -211,6 +211,12 @@ def test_a_compiler_that_is_none(kind, tmp_path, monkeypatch):
         compile_shared([tmp_path / "a.c"], tmp_path / "a.so", ())
     assert "mycc" in str(raised.value)
     assert "\n" not in str(raised.value)
+
+
+def test_a_shared_object_that_is_none(tmp_path):
+    (tmp_path / "a.so").write_text("rubbish")
+    with pytest.raises(ToolError, match=r"made a shared object that cannot be loaded \(.*; set CC to a comp"):
+        load_shared(tmp_path / "a.so")
 
 
 def test_a_compiler_that_does_not_say_its_version(tmp_path, monkeypatch):

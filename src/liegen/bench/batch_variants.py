@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import statistics
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +15,9 @@ from numpy.typing import NDArray
 from liegen.emit import render
 from liegen.emit.precision import DOUBLE, SINGLE, Precision
 from liegen.kernel import Kernel
-from liegen.native import compile_shared
+from liegen.native import compile_shared, load_shared
 from liegen.program import Port
+from liegen.temporary import working_folder
 from liegen.verify.batches import DTYPES, In, Out, batch_function
 
 from . import draws
@@ -79,12 +79,11 @@ def batch_variants(task: Task, *, rounds: int, seed: int) -> tuple[Timed, ...]:
     files = render(
         [kernel], ["c"], package=PACKAGE, regenerate="liegen bench", layout="col", scalar=SINGLE.type
     )
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with working_folder("liegen-bench-") as folder:
         for path, text in files.items():
             (folder / Path(path).name).write_text(text, encoding="utf-8")
         compile_shared(sorted(folder.glob("*_batch*.c")), folder / "batches.so", flags)
-        library = ctypes.CDLL(str(folder / "batches.so"))
+        library = load_shared(folder / "batches.so")
     called = cases(kernel)
     runs = [run_of(library, task, case, inputs) for case in called]
     times = in_turn(runs, CALLS * len(inputs), rounds)

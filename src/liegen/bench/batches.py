@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from liegen.program import Program
 from liegen.program.program import FREE
+from liegen.temporary import working_folder
 
 from . import draws, ours
 from .build import Array, Loaded, load
@@ -63,8 +62,7 @@ def profile(task: Task, *, sizes: Sequence[int], rounds: int, seed: int, flags: 
     moved = 8 * sum(port.size for port in (*task.inputs, *task.outputs))
     inputs = draws.rows(draws.samples(task.function, draws.RANDOM, DRAWN, seed))
     kept = tuple(n for n in sizes if n * moved <= ROOM)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with working_folder("liegen-bench-") as folder:
         machine = load_loops(folder)
         ceilings = machine.arithmetic(rounds)
         (single,) = ours.variants(task)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from liegen.emit.templates import lay_out
 from liegen.native import compiler_version as native_version
-from liegen.native import find_compiler, named_command, required_compiler
+from liegen.native import find_compiler, load_shared, named_command, required_compiler
 from liegen.subprocesses import run
 
 from .variant import AbsentError, Flags, Task, Variant, offsets
@@ -103,7 +103,7 @@ def load(task: Task, variant: Variant, flags: Flags, folder: Path) -> Loaded:
     link = find_cpp_compiler() if any(n.endswith(CPP_SUFFIX) for n in sources) else find_compiler()
     library = folder / "variant.so"
     _compiled([*link, "-shared", "-o", str(library), *map(str, objects), "-lm"])
-    return Loaded(ctypes.CDLL(str(library)), task, variant)
+    return Loaded(load_shared(library), task, variant)
 
 
 def _object(folder: Path, name: str, flags: Sequence[str]) -> Path:

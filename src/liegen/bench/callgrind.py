@@ -10,7 +10,6 @@ import json
 import platform
 import re
 import shutil
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +24,7 @@ from liegen.errors import OutputError, ToolError
 from liegen.native import required_compiler
 from liegen.program import Program
 from liegen.subprocesses import run, shown
+from liegen.temporary import working_folder
 
 from . import draws, ours
 from .build import compiler_version
@@ -93,8 +93,7 @@ def instructions(functions: Sequence[AnyFunction]) -> Instructions:
     calls = {
         (f.name, kind): _call(f, symbol, program) for f in functions for kind, symbol, program in _programs(f)
     }
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with working_folder("liegen-bench-") as folder:
         kept = {
             path.removeprefix("c/"): text
             for path, text in files.items()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from liegen.emit.templates import lay_out
-from liegen.native import compile_shared
+from liegen.native import compile_shared, load_shared
 
 from .build import Array
 from .timing import in_turn
@@ -70,4 +70,4 @@ def load_loops(folder: Path) -> Machine:
     source, library = folder / "ceilings.c", folder / "ceilings.so"
     source.write_text(lay_out("bench/ceilings.c.j2", {"chains": CHAINS}), encoding="utf-8")
     compile_shared([source], library, FLAGS)
-    return Machine(ctypes.CDLL(str(library)))
+    return Machine(load_shared(library))

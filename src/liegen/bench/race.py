@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import statistics
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+from liegen.temporary import working_folder
 
 from . import draws
 from .agreement import Errors, errors
@@ -100,7 +101,7 @@ def race(task: Task, makers: Mapping[str, Maker], plan: Plan) -> Result:
     inputs = {kind: draws.rows(samples) for kind, samples in drawn.items()}
     references = {kind: Errors.of(task, samples[: plan.references]) for kind, samples in drawn.items()}
     first, *others = plan.flags
-    with tempfile.TemporaryDirectory() as folder:
+    with working_folder("liegen-bench-") as folder:
         loaded, refused = _loaded(task, [(first, v) for v in made], plan, Path(folder, first))
         if others:
             best = _fastest(loaded, inputs[draws.RANDOM], plan)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from liegen.emit.importing import load_modules
 from liegen.emit.precision import DOUBLE, SINGLE, Precision
 from liegen.kernel import Kernel
 from liegen.program import Program
+from liegen.temporary import working_folder
 
 from .compiled import c_backends, compile_c
 
@@ -49,9 +49,11 @@ class Workspace:
 
 @contextmanager
 def workspace(kernels: Sequence[Kernel]) -> Generator[Workspace]:
-    """Render the kernels to a temporary folder and compile them. Raises ToolError when C does not compile."""
-    with tempfile.TemporaryDirectory(prefix="liegen-verify-") as name:
-        folder = Path(name)
+    """Render the kernels to a temporary folder and compile them.
+
+    Raises ToolError when C does not compile, and where there is no room for temporary files.
+    """
+    with working_folder("liegen-verify-") as folder:
         files = render(
             kernels, TARGETS, package=PACKAGE, regenerate="liegen verify", layout="col", scalar=SINGLE.type
         )

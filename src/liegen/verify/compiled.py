@@ -14,7 +14,7 @@ from liegen.emit.c_block import turned_outputs
 from liegen.emit.c_target import value_name
 from liegen.emit.precision import DOUBLE, Precision
 from liegen.kernel import Kernel
-from liegen.native import compile_shared, find_compiler
+from liegen.native import compile_shared, find_compiler, load_shared
 from liegen.program import Program
 
 from .batches import DTYPES, batch_evaluator, row_major
@@ -54,7 +54,7 @@ def c_backends(
     kernel: Kernel, library: Path, package: str, precision: Precision = DOUBLE
 ) -> tuple[tuple[str, bool, Evaluate], ...]:
     """(name, with Jacobians, evaluate) of its functions: of one factor, of a batch; by rows, by columns."""
-    shared = ctypes.CDLL(str(library))
+    shared = load_shared(library)
     orders = [("value", value_name(kernel), kernel.value, False)]
     orders += [("", kernel.name, kernel.jacobians, False)] if kernel.variables else []
     orders += [("columns", f"{kernel.name}_cm", kernel.jacobians, True)]

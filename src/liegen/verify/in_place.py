@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from liegen.emit.c_target import value_name
 from liegen.kernel import Kernel
+from liegen.native import load_shared
 from liegen.program import Program
 
 from .backends import PACKAGE, Workspace
@@ -22,7 +23,7 @@ def in_place(kernel: Kernel, place: Workspace, arguments: Mapping[str, Array]) -
     """Write every output over every argument of its size, at all samples. ``worst`` counts differences."""
     if place.library is None:
         return Check("in place", True, 0.0, 0.0, "results", "", 0, note="not checked", checked=False)
-    shared = ctypes.CDLL(str(place.library))
+    shared = load_shared(place.library)
     functions = [(value_name(kernel), kernel.value)]
     functions += [(kernel.name, kernel.jacobians)] if kernel.variables else []
     wrong, where, count = 0, "", len(next(iter(arguments.values())))
