@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
+import warnings
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -50,3 +53,12 @@ class CompilerWarning(UserWarning):
 
 class CacheWarning(UserWarning):
     """The cache of compiled factors cannot be used; the message says why."""
+
+
+def warned(message: str, category: type[Warning]) -> None:
+    """Warn with the line of the caller's program, the first one outside of liegen."""
+    package, level = str(Path(__file__).parent), 1
+    frame = inspect.currentframe()
+    while frame is not None and Path(frame.f_code.co_filename).is_relative_to(package):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, category, stacklevel=level - (frame is None))

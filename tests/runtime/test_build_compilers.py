@@ -39,6 +39,30 @@ def test_a_compiler_that_does_not_know_the_processor(folder, tmp_path, monkeypat
     works(liegen.compile(rotated))
 
 
+@pytest.mark.skipif(os.name != "posix", reason="a shell script")
+def test_a_compiler_that_writes_rubbish(folder, tmp_path, monkeypatch):
+    rubbish = 'while [ $# -gt 0 ]; do if [ "$1" = -o ]; then echo rubbish > "$2"; fi; shift; done'
+    monkeypatch.setenv("CC", script(tmp_path / "mycc", rubbish))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(ToolError, match=r"what .*mycc made can neither be kept nor loaded: .*Set CC to"):
+            liegen.compile(rotated)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a shell script")
+def test_a_compiler_that_makes_another_library(folder, tmp_path, monkeypatch):
+    real = " ".join(native.find_compiler())
+    (tmp_path / "other.c").write_text("int other;\n")
+    other = (
+        'for a; do if [ "$p" = -o ]; then out="$a"; fi; p="$a"; done\n'
+        f'case "$*" in *" -shared "*) exec {real} -shared -fPIC -o "$out" {tmp_path}/other.c;; esac\n'
+        f'exec {real} "$@"'
+    )
+    monkeypatch.setenv("CC", script(tmp_path / "mycc", other))
+    with pytest.raises(ToolError, match=r"rotated: .*mycc made a library without its functions"):
+        liegen.compile(rotated)
+
+
 @pytest.mark.slow
 def test_the_compiler_of_the_package_ziglang(folder, monkeypatch):
     pytest.importorskip("ziglang")

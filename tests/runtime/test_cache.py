@@ -7,6 +7,7 @@ import errno
 import os
 import stat
 import sys
+import tempfile
 import warnings
 from pathlib import Path
 
@@ -16,7 +17,8 @@ from runtime_tools import child, entries, works
 
 import liegen
 from compiler_tools import needs_compiler
-from liegen.errors import CacheWarning
+from liegen import temporary
+from liegen.errors import CacheWarning, ToolError
 from liegen.runtime import build, cache
 
 pytestmark = [needs_compiler, pytest.mark.usefixtures("quick_builds")]
@@ -175,3 +177,81 @@ def test_several_processes_at_once(folder):
     names = entries(folder)
     assert len({name.split("-")[0] for name in names}) == 1
     assert not [name for name in names if name.startswith(".")]
+
+
+# --- what others left or put there -----------------------------------------------------------------------
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")
+def test_a_pipe_in_place_of_an_entry_is_not_waited_for(folder, compilations):
+    works(liegen.compile(rotated))
+    (name,) = entries(folder)
+    (folder / name).unlink()
+    os.mkfifo(folder / name, 0o600)
+    works(liegen.compile(rotated))
+    assert len(compilations) == 2
+    assert (folder / name).is_file()
+
+
+def key_of(name):
+    return name.partition("-")[0]
+
+
+def test_an_entry_of_another_key_is_not_loaded(folder, compilations):
+    """A whole library, but of another factor: its name says so, whatever it is renamed to."""
+    works(liegen.compile(rotated))
+    (mine,) = entries(folder)
+    other = rotated.vary("R", name="turned")
+    liegen.compile(other)
+    (theirs,) = set(entries(folder)) - {mine}
+    (folder / mine).unlink()
+    (folder / theirs).rename(folder / f"{key_of(mine)}-{theirs.partition('-')[2]}")
+    works(liegen.compile(rotated))
+    assert len(compilations) == 3
+
+
+def test_a_library_without_the_functions_is_made_anew(folder, compilations):
+    """Even one whose name is right."""
+    works(liegen.compile(rotated))
+    (mine,) = entries(folder)
+    other = rotated.vary("R", name="turned")
+    liegen.compile(other)
+    (theirs,) = set(entries(folder)) - {mine}
+    content = (folder / theirs).read_bytes()
+    (folder / mine).unlink()
+    forged = folder / f"{cache.entry_name(key_of(mine), content)}{cache.SUFFIX}"
+    forged.write_bytes(content)
+    forged.chmod(0o600)
+    works(liegen.compile(rotated))
+    assert len(compilations) == 3
+    assert not forged.exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="processes of POSIX")
+def test_folders_of_dead_processes_are_removed(folder, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    dead = os.fork()
+    if not dead:
+        os._exit(0)
+    os.waitpid(dead, 0)
+    here = temporary.machine()
+    gone = [f"{build.WORK}{here}-{dead}-abc", f"{build.WORK}elsewhere-1-old"]
+    stay = [f"{build.WORK}{here}-{os.getpid()}-abc", f"{build.WORK}elsewhere-{dead}-new", f"{build.WORK}x"]
+    for name in (*gone, *stay):
+        (tmp_path / name / "deep").mkdir(parents=True)
+    os.utime(tmp_path / gone[1], (0, 0))
+    works(liegen.compile(rotated))
+    left = entries(tmp_path)
+    assert not set(gone) & set(left)
+    assert set(stay) <= set(left)
+    assert len([name for name in left if name.startswith(build.WORK)]) == len(stay)
+
+
+def test_no_temporary_folder(folder, monkeypatch):
+    def fail(*args, **named):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(tempfile, "mkdtemp", fail)
+    cache.private_folder.cache_clear()
+    with pytest.raises(ToolError, match=r"rotated: .* can neither be kept .*No space left .* TMPDIR to a"):
+        liegen.compile(rotated)

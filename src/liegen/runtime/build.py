@@ -6,20 +6,24 @@ import ctypes
 import hashlib
 import json
 import shutil
-import tempfile
-import warnings
+from contextlib import suppress
 from pathlib import Path
 
-from liegen.errors import CacheWarning, ToolError
-from liegen.native import compile_shared, compiler_version, find_compiler, processor
+from liegen.emit.loops import symbol
+from liegen.errors import CacheWarning, ToolError, warned
+from liegen.native import compile_shared, compiler_version, processor, required_compiler
+from liegen.subprocesses import TimeLimitError, shown
+from liegen.temporary import temporary_folder
 
 from .cache import SUFFIX, Refused, cache_folder, find, install, opened, private_folder
-from .source import Source
+from .source import PACKAGE, Source
 
 #: a * b + c may be rounded once; no call of libm sets errno, no unused arm of a select traps.
 FLAGS = ("-std=c99", "-O3", "-ffp-contract=fast", "-fno-math-errno", "-fno-trapping-math")
 #: For this machine's processor; left out where a compiler does not know it.
 NATIVE = ("-march=native",)
+#: Names of the folders where C is compiled; they go on with the number of the process.
+WORK, KEPT = "liegen-build-", "liegen-failed-"
 
 
 def cache_key(source: Source, command: tuple[str, ...]) -> str:
@@ -35,28 +39,52 @@ def load(source: Source) -> ctypes.CDLL:
     source. Warns (CacheWarning) where the cache cannot be used; a private temporary folder then takes its
     place for the life of this process.
     """
-    command = find_compiler()
-    if not command:
-        raise ToolError("no C compiler was found; install one, or name it in the environment variable CC")
+    command = required_compiler()
     key = cache_key(source, command)
     try:
-        folder = opened(cache_folder())
-        return ctypes.CDLL(str(find(folder, key) or _built(source, folder, key)))
+        return _loaded(source, opened(cache_folder()), key)
     except Refused as reason:
         refused = str(reason)
     except OSError as error:  # for example a file system without execution
         refused = f"cannot load from it: {error}"
-    warnings.warn(f"compiled factors are not kept: {refused}", CacheWarning, stacklevel=4)
     try:
-        folder = private_folder()
-        return ctypes.CDLL(str(find(folder, key) or _built(source, folder, key)))
+        library = _loaded(source, private_folder(), key)
     except (OSError, Refused) as error:
-        raise ToolError(f"{source.name}: the compiled factor cannot be kept or loaded: {error}") from error
+        raise ToolError(
+            f"{source.name}: what {shown(command)} made can neither be kept nor loaded: {refused}; {error}. "
+            "Set CC to a compiler for this machine, TMPDIR to a folder with room"
+        ) from error
+    warned(f"compiled factors are not kept: {refused}", CacheWarning)
+    return library
+
+
+def _loaded(source: Source, folder: Path, key: str) -> ctypes.CDLL:
+    """The entry of a key where it can be loaded and is that factor, else a new one."""
+    entry = find(folder, key)
+    library = _opened(source, entry) if entry else None
+    if library is None:
+        if entry:
+            with suppress(OSError):
+                entry.unlink()
+        library = _opened(source, _built(source, folder, key))
+    if library is None:
+        raise ToolError(f"{source.name}: {shown(required_compiler())} made a library without its functions")
+    return library
+
+
+def _opened(source: Source, entry: Path) -> ctypes.CDLL | None:
+    """The library, None where it has not the functions of the factor."""
+    library = ctypes.CDLL(str(entry))
+    symbols = (symbol(source.name, method.name, PACKAGE) for method in source.methods)
+    return library if all(hasattr(library, name) for name in symbols) else None
 
 
 def _built(source: Source, folder: Path, key: str) -> Path:
-    """Compile outside of the cache, then move the result there."""
-    work, keep = Path(tempfile.mkdtemp(prefix="liegen-build-")), False
+    """Compile outside of the cache, then move the result there. Raises Refused where there is no room."""
+    try:
+        work, keep = temporary_folder(WORK), False
+    except OSError as error:
+        raise Refused(f"no temporary folder can be made: {error.strerror or error}") from error
     library = work / f"{source.name}{SUFFIX}"
     try:
         for name, text in source.c.items():
@@ -64,12 +92,23 @@ def _built(source: Source, folder: Path, key: str) -> Path:
         sources = sorted(work.glob("*.c"))
         try:
             compile_shared(sources, library, (*FLAGS, *NATIVE))
+        except TimeLimitError:
+            raise
         except ToolError:
             compile_shared(sources, library, FLAGS)
         return install(folder, key, library)
+    except OSError as error:
+        raise Refused(f"cannot write to {work}: {error.strerror}") from error
     except ToolError as error:
         keep = True
-        raise ToolError(f"{source.name}: {error}\nthe C source is kept in {work}") from error
+        raise ToolError(f"{source.name}: {error}\nthe C source is kept in {_kept(work)}") from error
     finally:
         if not keep:
             shutil.rmtree(work, ignore_errors=True)
+
+
+def _kept(work: Path) -> Path:
+    """The folder under a name that no later process sweeps."""
+    with suppress(OSError):
+        return work.rename(work.with_name(work.name.replace(WORK, KEPT, 1)))
+    return work

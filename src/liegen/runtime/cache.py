@@ -1,7 +1,7 @@
 """The folder of compiled factors: only its owner can write there, and what is loaded is checked first.
 
 An entry is one file, ``KEY-DIGEST.so``: the key says what it was made from, the digest (SHA-256) what it
-holds. A file gets its name when it is complete, so that no process sees a part of it.
+holds for that key. A file gets its name when it is complete, so that no process sees a part of it.
 """
 
 from __future__ import annotations
@@ -13,12 +13,17 @@ import shutil
 import stat
 import sys
 import tempfile
+import time
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+from liegen.temporary import OLD, temporary_folder
+
 #: The part of the cache that this layout of entries has for itself.
 FOLDER = "compiled-1"
+#: Beginnings of temporary names.
+PART, PRIVATE = ".part-", "liegen-private-"
 SUFFIX = ".dll" if sys.platform == "win32" else ".so"
 
 
@@ -87,8 +92,11 @@ def _check_parent(path: Path, status: os.stat_result) -> None:
 
 @cache
 def private_folder() -> Path:
-    """A new temporary folder that only this user can open, removed when the process ends."""
-    folder, owner = Path(tempfile.mkdtemp(prefix="liegen-")), os.getpid()
+    """A new temporary folder that only this user can open, removed when the process ends.
+
+    Raises OSError where none can be made.
+    """
+    owner, folder = os.getpid(), temporary_folder(PRIVATE)
 
     def remove() -> None:
         if os.getpid() == owner:  # a forked child shares it
@@ -96,6 +104,11 @@ def private_folder() -> Path:
 
     atexit.register(remove)
     return folder
+
+
+def entry_name(key: str, content: bytes) -> str:
+    """What a file is called that was made for a key, without its suffix."""
+    return f"{key}-{hashlib.sha256(key.encode() + content).hexdigest()}"
 
 
 def find(folder: Path, key: str) -> Path | None:
@@ -111,27 +124,35 @@ def find(folder: Path, key: str) -> Path | None:
 def _trusted(path: Path) -> bool:
     """Whether a file is a plain one of this user and holds what its name says."""
     try:
-        with os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0)), "rb") as file:
+        flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)  # of a pipe
+        with os.fdopen(os.open(path, flags | getattr(os, "O_BINARY", 0)), "rb") as file:
             status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                return False
             if os.name == "posix" and (status.st_uid != os.getuid() or status.st_mode & 0o022):
                 return False
-            return path.stem.endswith(f"-{hashlib.sha256(file.read()).hexdigest()}")
+            return path.stem == entry_name(path.stem.partition("-")[0], file.read())
     except OSError:
         return False
 
 
 def install(folder: Path, key: str, library: Path) -> Path:
     """Copy a shared object into the folder in one step. Raises Refused where that fails."""
-    content = library.read_bytes()
-    target = folder / f"{key}-{hashlib.sha256(content).hexdigest()}{SUFFIX}"
     part = ""
     try:
-        descriptor, part = tempfile.mkstemp(prefix=".part-", dir=folder)
+        content = library.read_bytes()
+        target = folder / f"{entry_name(key, content)}{SUFFIX}"
+        for left in folder.glob(f"{PART}*"):
+            with suppress(OSError):
+                if time.time() - left.lstat().st_mtime > OLD:  # machines may share the folder
+                    left.unlink()
+        descriptor, part = tempfile.mkstemp(prefix=PART, dir=folder)
         with os.fdopen(descriptor, "wb") as file:
             file.write(content)
         Path(part).replace(target)
     except OSError as error:
         if part:
-            Path(part).unlink(missing_ok=True)
+            with suppress(OSError):
+                Path(part).unlink(missing_ok=True)
         raise Refused(f"cannot write to {folder}: {error.strerror}") from error
     return target

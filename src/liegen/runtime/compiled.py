@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import pickle
-import warnings
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from liegen.define import Function
 from liegen.emit.loops import symbol
-from liegen.errors import CompilerWarning, DefinitionError, ToolError
+from liegen.errors import CompilerWarning, DefinitionError, ToolError, warned
 from liegen.native import find_compiler
 
 from .build import load
@@ -210,10 +209,9 @@ def _evaluators(source: Source, library: ctypes.CDLL | None) -> Mapping[str, Eva
 def _has_compiler() -> bool:
     if find_compiler():
         return True
-    warnings.warn(
+    warned(
         "no C compiler was found: compiled factors run as NumPy code; install one, name it in the "
         "environment variable CC, or pip install liegen[compile]",
         CompilerWarning,
-        stacklevel=4,
     )
     return False
