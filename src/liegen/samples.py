@@ -9,19 +9,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.arguments import coerced
 from liegen.coefficients import tables
 from liegen.define import Function
 from liegen.errors import DefinitionError
+from liegen.exits import no_exit
 from liegen.manifolds import Manifold, Value
 from liegen.manifolds.given import spoken
-from liegen.manifolds.node import raised_at
-from liegen.text import exception_text
-from liegen.trace import constant
+from liegen.manifolds.node import raised_in_user_code
+from liegen.text import exception_text, printable
+from liegen.trace import Parameter, constant
 
 Sampler = Callable[["Draw", "Case"], Mapping[str, Value]]
 
@@ -98,43 +100,60 @@ class Draw:
 def sampler_of(function: Function[..., Any]) -> Sampler:
     """What draws the arguments of a factor: its own sampler, or the default one.
 
-    What its own sampler does wrong is a DefinitionError that names the factor, the sampler and the argument.
+    What its own sampler gives may be arrays and numbers, as in a call of the factor. What it does wrong is a
+    DefinitionError that names the factor, the sampler and the argument.
     """
-    manifolds: dict[str, Any] = {p.name: p.manifold for p in function.plain.parameters}
-    own = function.sampler
+    parameters = function.plain.parameters
+    own: Callable[..., object] | None = function.sampler  # whatever it returns is checked
     if own is None:
+        manifolds: dict[str, Any] = {p.name: p.manifold for p in parameters}
         return default_sampler(manifolds)
-    name = getattr(own, "__name__", type(own).__name__)
+    name = printable(getattr(own, "__name__", type(own).__name__))
     what = f"{function.graph.site}: {function.name}: its sampler {name}"
+    # It may serve the formula with other arguments bound too.
+    known = {s.name for s in function.declared} | {p.name for p in function.graph.parameters}
 
     def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
         try:
-            given: Any = own(draw, case)
+            with no_exit():
+                given = own(draw, case)
+                values = {**cast(Mapping[str, Any], given)} if isinstance(given, Mapping) else None
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a user's function may raise anything
+            site = raised_in_user_code(error)
+            at = f" at {site}" if site else "; it is called with (draw, case)"
             raise DefinitionError(
-                f"{what} raised {exception_text(error)} at {raised_at(error)}, in the case {case.name!r}"
+                f"{what} raised {exception_text(error)}{at}, in the case {case.name!r}"
             ) from error
-        if not isinstance(given, Mapping):
-            raise DefinitionError(
-                f"{what} gave {spoken(given)}; it must return {{argument: value}} for {', '.join(manifolds)}"
-            )
-        values: dict[str, Any] = {**given}
-        for argument, manifold in manifolds.items():
-            value = values.get(argument)
-            if not isinstance(value, Value) or value.form != manifold.form:
-                shown = "nothing" if argument not in values else _shown(value)
-                needed = f"it must return a {manifold.__name__} for it"
-                raise DefinitionError(f"{what} gave {shown} for {argument!r}; {needed}")
-            constant(value, f"{what}: what it gave for {argument!r}")
-        return values
+        names = ", ".join(p.name for p in parameters)
+        if values is None:
+            got = spoken(cast(object, given))
+            raise DefinitionError(f"{what} gave {got}; it must return {{argument: value}} for {names}")
+        for argument in values:
+            if argument not in known:
+                shown = printable(repr(argument), 60)
+                raise DefinitionError(
+                    f"{what} gave a value for {shown}, which is no argument; it has {names}"
+                )
+        return values | {p.name: _given(what, p, values) for p in parameters}
 
     return sample
 
 
-def _shown(value: object) -> str:
-    return f"a {value.form.name}" if isinstance(value, Value) else spoken(value)
+def _given(what: str, parameter: Parameter, values: Mapping[str, Any]) -> Value:
+    """The typed value of one argument, which must be one finite element."""
+    name, manifold = parameter.name, parameter.manifold
+    if name not in values:
+        raise DefinitionError(
+            f"{what} gave nothing for {name!r}; it must return a {manifold.__name__} for it"
+        )
+    stored = parameter.storage
+    value = coerced(
+        f"{what}: what it gave for {name!r}", manifold, stored, stored.shape or (stored.size,), values[name]
+    )
+    constant(value, f"{what}: what it gave for {name!r}")
+    return value
 
 
 def default_sampler(manifolds: Mapping[str, type[Manifold]]) -> Sampler:

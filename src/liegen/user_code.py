@@ -10,21 +10,20 @@ import ast
 import os
 import sys
 import warnings
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NoReturn, TextIO
+from typing import TextIO
 
 import numpy as np
 
 from liegen.errors import LiegenError, Site, SourceError
+from liegen.exits import no_exit
 from liegen.text import exception_text
 from liegen.trace import unknown_annotation
 
 _STREAMS = ("stdin", "stdout", "stderr")
-#: What ends a program without an exception.
-_EXITS = ("_exit", "abort")
 
 
 @contextmanager
@@ -43,24 +42,15 @@ def _undisturbed() -> Generator[None]:
     """The folder, the streams, the handling of warnings and of NumPy's errors are put back afterwards."""
     folder = Path.cwd()
     streams = {name: getattr(sys, name) for name in _STREAMS}
-    ends: dict[str, Callable[..., Any]] = {name: getattr(os, name) for name in _EXITS}
     depth = sys.getrecursionlimit()
-    for name in _EXITS:
-        setattr(os, name, _end)
     try:
-        with warnings.catch_warnings(), np.errstate():
+        with warnings.catch_warnings(), np.errstate(), no_exit():
             yield
     finally:
-        for name, function in ends.items():
-            setattr(os, name, function)
         for number, (name, stream) in enumerate(streams.items()):
             setattr(sys, name, _reopened(number, name, stream))
         sys.setrecursionlimit(depth)
         os.chdir(folder)
-
-
-def _end(*_: object) -> NoReturn:
-    raise SystemExit
 
 
 def _reopened(number: int, name: str, stream: TextIO | None) -> TextIO | None:

@@ -208,11 +208,16 @@ def here() -> Site:
 
 
 def raised_at(error: BaseException) -> Site:
-    """The last line outside liegen's machinery that an exception came through."""
-    site, traceback = here(), error.__traceback__
+    """The last line outside liegen's machinery that an exception came through, else the nearest one here."""
+    return raised_in_user_code(error) or here()
+
+
+def raised_in_user_code(error: BaseException) -> Site | None:
+    """The last line outside liegen's machinery that an exception came through, if any."""
+    site, traceback = None, error.__traceback__
     while traceback is not None:
         file = traceback.tb_frame.f_code.co_filename
-        if not _machinery(file):
+        if not _machinery(file) and not _generated(traceback.tb_frame):
             site = Site(Path(file).name, traceback.tb_lineno)
         traceback = traceback.tb_next
     return site

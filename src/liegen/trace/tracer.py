@@ -13,9 +13,11 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from liegen.charts import Preset
 from liegen.errors import DefinitionError, LiegenError, Site
+from liegen.exits import no_exit
 from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
 from liegen.manifolds.vector import VectorLike, as_vector
+from liegen.text import exception_text
 
 from .charting import ChartLike, common_chart, in_charts
 from .defaults import default_of
@@ -231,11 +233,16 @@ def trace(
     values = {s.name: s.bound if s.bound is not None else traced[s.name] for s in declared}
     with _recording(common_chart(chart, f"{site}: {name}")) as record:
         try:
-            result = function(*(values[s.name] for s in declared if s.positional),
-                              **{s.name: values[s.name] for s in declared if not s.positional})  # fmt: skip
+            with no_exit():
+                result = function(
+                    *(values[s.name] for s in declared if s.positional),
+                    **{s.name: values[s.name] for s in declared if not s.positional},
+                )
         except LiegenError as error:
             raise type(error)(_with_site(name, error)) from None
-        except Exception as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # a user's function may raise anything
             raise DefinitionError(f"{raised_at(error)}: {name}: {_explained(error)}") from None
     named = _outputs(result, f"{site}: {name}", factor=factor)
     graph = Graph(
@@ -256,10 +263,12 @@ def _with_site(name: str, error: LiegenError) -> str:
     return f"{site}{name}: {text.removeprefix(site)}"
 
 
-def _explained(error: Exception) -> str:
+def _explained(error: BaseException) -> str:
     """What Python said, and what a residual may do instead."""
-    text = " ".join(f"{type(error).__name__}: {error}".split())
-    return f"{text}; values are elements of manifolds: use their operations (compose, local, @, [k], ...)"
+    if not isinstance(error, Exception):
+        return f"{exception_text(error)}; a formula returns a value, it does not end the program"
+    cure = "values are elements of manifolds: use their operations (compose, local, @, [k], ...)"
+    return f"{exception_text(error)}; {cure}"
 
 
 @contextmanager
