@@ -20,7 +20,7 @@ from compiler_tools import needs_compiler
 from liegen import R2, factor, require
 from liegen.cli.application import app
 from liegen.emit import render
-from liegen.runtime.source import emitted
+from liegen.runtime.source import VALUE, emitted
 from liegen.text import c_comment, c_string, docstring, hash_comment, in_json, in_latex, one_line, printable
 
 HOSTILE = {
@@ -188,7 +188,7 @@ def test_a_package_of_hostile_texts(tmp_path: Path) -> None:
             (tmp_path / path).parent.mkdir(exist_ok=True, parents=True)
             (tmp_path / path).write_bytes(content.encode())
         assert json.loads(files[f"p{k}.json"])["factors"]["pull"]["requirements"] == [text]
-        loops = emitted(hostile(text).kernel).c["pull_loops.c"]
+        loops = emitted(hostile(text).kernel).c[VALUE]["pull_loops.c"]
         assert not unseen(loops)
         (tmp_path / "c" / f"strings{k}.c").write_bytes(_strings(loops).encode())
     names = [f"p{k}" for k in range(len(HOSTILE))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 import warnings
 from dataclasses import dataclass
@@ -57,8 +58,8 @@ class CacheWarning(UserWarning):
 
 def warned(message: str, category: type[Warning]) -> None:
     """Warn with the line of the caller's program, the first one outside of liegen."""
-    package, level = str(Path(__file__).parent), 1
+    between, level = (Path(__file__).parent, Path(functools.__file__)), 1  # a cached property calls liegen
     frame = inspect.currentframe()
-    while frame is not None and Path(frame.f_code.co_filename).is_relative_to(package):
+    while frame is not None and any(map(Path(frame.f_code.co_filename).is_relative_to, between)):
         frame, level = frame.f_back, level + 1
     warnings.warn(message, category, stacklevel=level - (frame is None))

@@ -26,9 +26,9 @@ def compilations(monkeypatch):
     """The shared objects that were compiled."""
     made = []
 
-    def counted(sources, library, flags):
+    def counted(sources, library, flags, **named):
         made.append(library)
-        native.compile_shared(sources, library, flags)
+        native.compile_shared(sources, library, flags, **named)
 
     monkeypatch.setattr(build, "compile_shared", counted)
     return made

@@ -7,7 +7,7 @@ the same shared object, so that it lives as long as the code does.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from liegen.kernel import Kernel
@@ -124,25 +124,27 @@ def symbol(kernel_name: str, method: str, package: str) -> str:
     return f"{package}_{kernel_name}_{method}_gufunc"
 
 
-def loops_source(kernel: Kernel, options: Options) -> str:
-    """The C of all loops of a factor."""
+def loops_source(kernel: Kernel, options: Options, names: Collection[str], number: Number) -> str:
+    """The C of the loops of the methods with these names, for arrays of one type of number."""
     return lay_out(
         "runtime/loops.c.j2",
         {
             "header": (f"{kernel.name}: loops for NumPy", "", *closing(options)),
             "factor": kernel.name,
-            "methods": [_printed(kernel, method, options.package) for method in methods(kernel)],
+            "methods": [
+                _printed(kernel, method, options.package, number)
+                for method in methods(kernel)
+                if method.name in names
+            ],
         },
     )
 
 
-def _printed(kernel: Kernel, method: Method, package: str) -> dict[str, object]:
+def _printed(kernel: Kernel, method: Method, package: str, number: Number) -> dict[str, object]:
     width = len(method.inputs)
     status = method.name == "status"
-    codes = [[n.code] * width + [INT if status else n.code] * len(method.outputs) for n in NUMBERS]
-    loops = [
-        _status_loop(kernel, method, n, package) if status else _loop(method, n, package) for n in NUMBERS
-    ]
+    code = INT if status else number.code
+    loop = _status_loop(kernel, method, number, package) if status else _loop(method, number, package)
     return {
         "name": method.name,
         "symbol": symbol(kernel.name, method.name, package),
@@ -151,9 +153,9 @@ def _printed(kernel: Kernel, method: Method, package: str) -> dict[str, object]:
         "signature": method.signature,
         "inputs": width,
         "outputs": len(method.outputs),
-        "data": ["NULL"] * len(NUMBERS),
-        "types": [code for row in codes for code in row],
-        "loops": loops,
+        "data": ["NULL"],
+        "types": [number.code] * width + [code] * len(method.outputs),
+        "loops": [loop],
     }
 
 

@@ -26,29 +26,29 @@ NATIVE = ("-march=native",)
 WORK, KEPT = "liegen-build-", "liegen-failed-"
 
 
-def cache_key(source: Source, command: tuple[str, ...]) -> str:
+def cache_key(source: Source, part: str, command: tuple[str, ...]) -> str:
     """What decides on the machine code: the C, the compiler and its version, the flags, the processor."""
-    parts = [dict(source.c), command, compiler_version(command), FLAGS, NATIVE, processor()]
+    parts = [dict(source.c[part]), command, compiler_version(command), FLAGS, NATIVE, processor()]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:32]
 
 
-def load(source: Source) -> ctypes.CDLL:
-    """The compiled factor.
+def load(source: Source, part: str) -> ctypes.CDLL:
+    """A part of a factor, compiled.
 
     Raises ToolError without a compiler, and where it fails: with its own words and the folder that keeps the
     source. Warns (CacheWarning) where the cache cannot be used; a private temporary folder then takes its
     place for the life of this process.
     """
     command = required_compiler()
-    key = cache_key(source, command)
+    key = cache_key(source, part, command)
     try:
-        return _loaded(source, opened(cache_folder()), key)
+        return _loaded(source, part, opened(cache_folder()), key)
     except Refused as reason:
         refused = str(reason)
     except OSError as error:  # for example a file system without execution
         refused = f"cannot load from it: {error}"
     try:
-        library = _loaded(source, private_folder(), key)
+        library = _loaded(source, part, private_folder(), key)
     except (OSError, Refused) as error:
         raise ToolError(
             f"{source.name}: what {shown(command)} made can neither be kept nor loaded: {refused}; {error}. "
@@ -58,44 +58,44 @@ def load(source: Source) -> ctypes.CDLL:
     return library
 
 
-def _loaded(source: Source, folder: Path, key: str) -> ctypes.CDLL:
+def _loaded(source: Source, part: str, folder: Path, key: str) -> ctypes.CDLL:
     """The entry of a key where it can be loaded and is that factor, else a new one."""
     entry = find(folder, key)
-    library = _opened(source, entry) if entry else None
+    library = _opened(source, part, entry) if entry else None
     if library is None:
         if entry:
             with suppress(OSError):
                 entry.unlink()
-        library = _opened(source, _built(source, folder, key))
+        library = _opened(source, part, _built(source, part, folder, key))
     if library is None:
         raise ToolError(f"{source.name}: {shown(required_compiler())} made a library without its functions")
     return library
 
 
-def _opened(source: Source, entry: Path) -> ctypes.CDLL | None:
+def _opened(source: Source, part: str, entry: Path) -> ctypes.CDLL | None:
     """The library, None where it has not the functions of the factor."""
     library = ctypes.CDLL(str(entry))
-    symbols = (symbol(source.name, method.name, PACKAGE) for method in source.methods)
+    symbols = (symbol(source.name, method.name, PACKAGE) for method in source.offered(part))
     return library if all(hasattr(library, name) for name in symbols) else None
 
 
-def _built(source: Source, folder: Path, key: str) -> Path:
+def _built(source: Source, part: str, folder: Path, key: str) -> Path:
     """Compile outside of the cache, then move the result there. Raises Refused where there is no room."""
     try:
         work, keep = temporary_folder(WORK), False
     except OSError as error:
         raise Refused(f"no temporary folder can be made: {error.strerror or error}") from error
-    library = work / f"{source.name}{SUFFIX}"
+    library, what = work / f"{source.name}{SUFFIX}", f"compiling {source.name} ({part})"
     try:
-        for name, text in source.c.items():
+        for name, text in source.c[part].items():
             (work / name).write_text(text, encoding="utf-8")
         sources = sorted(work.glob("*.c"))
         try:
-            compile_shared(sources, library, (*FLAGS, *NATIVE))
+            compile_shared(sources, library, (*FLAGS, *NATIVE), what=what)
         except TimeLimitError:
             raise
         except ToolError:
-            compile_shared(sources, library, FLAGS)
+            compile_shared(sources, library, FLAGS, what=what)
         return install(folder, key, library)
     except OSError as error:
         raise Refused(f"cannot write to {work}: {error.strerror}") from error

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import namedtuple
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import cache, cached_property, lru_cache, partial
 from inspect import Parameter as Place
 from inspect import Signature
-from typing import Any, NoReturn
+from typing import Any, NoReturn, cast
 
 import numpy as np
+from numpy import ndarray
 
 from liegen.errors import DefinitionError
 from liegen.manifolds import Value
@@ -19,6 +20,7 @@ from .source import Parameter, Source
 
 #: Arrays in the order of the parameters in, an array or a tuple of arrays out, and ``out=``: as a gufunc.
 Evaluate = Callable[..., Any]
+_DOUBLE, _SINGLE = np.dtype(np.float64), np.dtype(np.float32)
 
 
 @cache
@@ -37,6 +39,12 @@ def _restored(name: str, fields: tuple[str, ...], values: tuple[Any, ...]) -> tu
     return made._make(values)
 
 
+@lru_cache(maxsize=64)
+def _is_small(dtype: np.dtype[Any]) -> bool:
+    """Whether single precision holds all numbers of this type."""
+    return np.can_cast(dtype, _SINGLE)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Call:
     """Callable on arrays (..., n) and on typed values; keyword-only arguments by name.
@@ -44,15 +52,20 @@ class Call:
     ``out`` is an array, or a tuple of arrays where there are several results. Raises TypeError for missing or
     unknown arguments, DefinitionError for a typed value of another manifold, and what NumPy raises for wrong
     shapes and dtypes.
+
+    ``all_types`` and ``doubles`` make what evaluates it, at the first call that needs it: for any type of
+    number, and where one of the arguments is no smaller one than float64.
     """
 
     name: str
     method: str
     parameters: tuple[Parameter, ...]
-    evaluate: Evaluate
+    all_types: Callable[[], Evaluate]
+    doubles: Callable[[], Evaluate] | None = None
     make: Any = None  # of the results, the tuple that is returned
     doc: str = ""
     owner: Any = field(default=None, init=False)  # the compiled factor that this is a method of
+    _made: Evaluate | None = field(default=None, init=False)  # by doubles
     _positional: int = field(init=False)
     _keywords: tuple[str, ...] = field(init=False)
     _defaults: Mapping[str, Any] = field(init=False)
@@ -82,12 +95,32 @@ class Call:
                 self._refuse(arrays, given)
         else:
             arrays = self.bound(arrays, given)
+        evaluate = self._made
         for array in arrays:
-            if isinstance(array, Value):
-                arrays = self._plain(arrays)
+            if type(array) is not ndarray:
+                arrays, evaluate = self._plain(arrays), None
                 break
-        results = self.evaluate(*arrays) if out is None else self.evaluate(*arrays, out=out)
+        if evaluate is None or arrays[0].dtype is not _DOUBLE:
+            evaluate = self._fitting(arrays)
+        results = evaluate(*arrays) if out is None else evaluate(*arrays, out=out)
         return results if self.make is None else self.make(results)
+
+    @cached_property
+    def evaluate(self) -> Evaluate:
+        """The method on arrays of any type, in the order of the parameters: of C, NumPy's ufunc itself."""
+        return self.all_types()
+
+    def in_fitting_type(self, *arrays: Any, out: Any = None) -> Any:
+        """As ``evaluate``, but single precision is compiled only where all arguments are of it."""
+        return self._fitting(arrays)(*arrays, out=out)
+
+    def _fitting(self, arrays: Sequence[Any]) -> Evaluate:
+        """Single precision is compiled where all arguments are of it."""
+        if self.doubles is None or all(_is_small(np.asarray(array).dtype) for array in arrays):
+            return self.evaluate
+        if self._made is None:
+            object.__setattr__(self, "_made", self.doubles())
+        return cast("Evaluate", self._made)
 
     def __repr__(self) -> str:
         return f"<compiled {self.name}{signature(self.parameters)}>"
@@ -140,10 +173,16 @@ def signature(parameters: Sequence[Parameter]) -> Signature:
     return Signature([*places, Place("out", Place.KEYWORD_ONLY, default=None)])
 
 
-def call(source: Source, method: str, evaluate: Evaluate) -> Call:
-    """The method of a factor on top of what evaluates it."""
+def call(
+    source: Source,
+    method: str,
+    all_types: Callable[[], Evaluate],
+    doubles: Callable[[], Evaluate] | None = None,
+) -> Call:
+    """The method of a factor on top of what makes its evaluators; see :class:`Call`."""
     described = next(m for m in source.methods if m.name == method)
     fields = tuple(port.name for port in described.outputs)
     made: Any = record(source.records[method], fields) if len(fields) > 1 else None
     make = partial(tuple.__new__, made) if made else None  # pyright: ignore[reportUnknownMemberType]
-    return Call(described.title, method, source.parameters, evaluate, make, source.docs[method])
+    doc = source.docs[method]
+    return Call(described.title, method, source.parameters, all_types, doubles, make, doc)

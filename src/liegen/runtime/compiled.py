@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import ctypes
 import pickle
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from typing import Any, Literal, cast
 
 from numpy.typing import ArrayLike
 
 from liegen.define import Function
-from liegen.emit.loops import symbol
+from liegen.emit.loops import Method
 from liegen.errors import CompilerWarning, DefinitionError, ToolError, warned
 from liegen.native import find_compiler
 
-from .build import load
 from .calls import Call, Evaluate, call, signature
 from .gathers import gathering_evaluator
 from .indexed import Indices, batch_evaluator, checked_indices, gathering
+from .libraries import Libraries
 from .numpy_code import numpy_evaluators
-from .source import PACKAGE, Source, emitted
-from .ufuncs import gufunc
+from .source import Source, emitted
 
 Backend = Literal["c", "numpy"]
 
@@ -80,14 +78,14 @@ class Indexed(Methods):
 class Compiled(Methods):
     """A factor on arrays (..., n): ``k(x, y, z=z)``, ``k.jacobians(x, y, z=z)``, ``k.status(x, y, z=z)``.
 
-    ``backend`` is "c" or "numpy"; ``asked`` what the caller chose. ``library`` is the loaded C.
+    ``backend`` is "c" or "numpy"; ``asked`` what the caller chose. ``libraries`` are the compiled C.
     ``requirements`` names the bits of the status.
     """
 
     source: Source
     backend: Backend
     asked: Backend | None
-    library: ctypes.CDLL | None
+    libraries: Libraries | None
     terms: Callable[[], Source] | None = None
 
     @cached_property
@@ -115,12 +113,15 @@ class Compiled(Methods):
         indices = checked_indices(self.source, index)
         calls: dict[str, Call] = {}
         for method in self.source.methods:
-            evaluate = gathering(method, self.calls[method.name].evaluate, indices)
-            if self.library is not None and method.name != "status":
-                any_layout = batch_evaluator(self.library, method, indices)
-                evaluate = gathering_evaluator(self.library, self.source.name, method, indices, any_layout)
-            calls[method.name] = call(self.source, method.name, evaluate)
+            calls[method.name] = call(self.source, method.name, partial(self._gathered, method, indices))
         return Indexed(*_first(calls), calls=calls, compiled=self, indices=indices)
+
+    def _gathered(self, method: Method, indices: Indices) -> Evaluate:
+        libraries = self.libraries
+        if libraries is None or method.name == "status":
+            return gathering(method, self.calls[method.name].in_fitting_type, indices)
+        any_layout = batch_evaluator(libraries, method, indices)
+        return gathering_evaluator(libraries.whole, self.source.name, method, indices, any_layout)
 
     def __repr__(self) -> str:
         shown = {"c": "C", "numpy": "NumPy code"}[self.backend]
@@ -185,11 +186,12 @@ def _terms_of(function: Function[..., Any]) -> Callable[[], Source]:
 
 def assembled(source: Source, asked: Backend | None, terms: Callable[[], Source] | None = None) -> Compiled:
     """The methods of a factor on a backend."""
-    library = load(source) if asked == "c" or (asked is None and _has_compiler()) else None
-    calls = {name: call(source, name, evaluate) for name, evaluate in _evaluators(source, library).items()}
+    in_c = asked == "c" or (asked is None and _has_compiler())
+    libraries = Libraries(source) if in_c else None
+    calls = _in_c(source, libraries) if libraries else _in_numpy(source)
     return Compiled(
         *_first(calls),
-        calls=calls, source=source, backend="numpy" if library is None else "c", asked=asked, library=library,
+        calls=calls, source=source, backend="c" if libraries else "numpy", asked=asked, libraries=libraries,
         terms=terms,
     )  # fmt: skip
 
@@ -197,13 +199,22 @@ def assembled(source: Source, asked: Backend | None, terms: Callable[[], Source]
 def _first(calls: Mapping[str, Call]) -> tuple[Any, ...]:
     """What calling the factor itself does."""
     value = calls["value"]
-    return value.name, value.method, value.parameters, value.evaluate, value.make, value.doc
+    made = value.all_types, value.doubles
+    return value.name, value.method, value.parameters, *made, value.make, value.doc
 
 
-def _evaluators(source: Source, library: ctypes.CDLL | None) -> Mapping[str, Evaluate]:
-    if library is None:
-        return numpy_evaluators(source)
-    return {m.name: gufunc(library, symbol(source.name, m.name, PACKAGE)) for m in source.methods}
+def _in_c(source: Source, libraries: Libraries) -> Mapping[str, Call]:
+    """The value is compiled now, so that what the compiler refuses is told now."""
+    _ = libraries.value
+    return {
+        m.name: call(source, m.name, partial(libraries.all_of, m), partial(libraries.doubles_of, m))
+        for m in source.methods
+    }
+
+
+def _in_numpy(source: Source) -> Mapping[str, Call]:
+    made = numpy_evaluators(source)
+    return {name: call(source, name, *[partial(made.__getitem__, name)] * 2) for name in made}
 
 
 def _has_compiler() -> bool:

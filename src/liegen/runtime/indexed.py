@@ -6,6 +6,7 @@ import ctypes
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from liegen.emit.loops import NUMBERS, Method
 from liegen.program import Port
 
 from .calls import Evaluate
+from .libraries import Libraries
 from .numpy_code import handed, number, targets
 from .source import PACKAGE, Source
 
@@ -127,9 +129,16 @@ def _leading(method: Method, port: Port, array: Array, length: int) -> bool:
     )
 
 
-def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> Evaluate:
+def batch_evaluator(libraries: Libraries, method: Method, indices: Indices) -> Evaluate:
     """A method through the C function of batches; the interpreter's lock is released while it runs."""
-    functions = {np.dtype(n.dtype): _function(library, method, n.precision.suffix) for n in NUMBERS}
+    single, _ = NUMBERS
+
+    @cache
+    def function(dtype: np.dtype[Any]) -> Callable[..., int]:
+        if dtype == single.dtype:
+            return _function(libraries.singles, method, single.precision.suffix)
+        return _function(libraries.whole, method, "")
+
     n, given = indices.length, len(method.inputs)
     order = [port.name for port in (*method.inputs, *method.outputs)]
     places = [order.index(name) if name in order else None for name in method.taken[given:]]
@@ -146,7 +155,7 @@ def batch_evaluator(library: ctypes.CDLL, method: Method, indices: Indices) -> E
             made_here.append(_Out(made.ctypes.data, *steps(made, port.shape)))
             results.append(made)
         wanted = (_Out(None, 0, 0) if p is None else made_here[p - given] for p in places)
-        functions[dtype](n, *passed, *wanted, None)
+        function(dtype)(n, *passed, *wanted, None)
         return handed(results, dtype, out)
 
     return evaluate

@@ -113,12 +113,12 @@ def _members(factor: Indexed, blocks: Mapping[str, ArrayLike]) -> list[Member]:
 
 def _add(terms: Indexed, named: Mapping[str, Any], targets: Sequence[tuple[Array, Places]]) -> None:
     """Add each output of the terms at its places."""
-    library, source = terms.compiled.library, terms.compiled.source
-    if library is None:
+    libraries, source = terms.compiled.libraries, terms.compiled.source
+    if libraries is None:
         for output, (data, places) in zip(terms(**named), targets, strict=True):
             _add_in_numpy(output, data, places)
         return
-    function = library[sums_symbol(source.name, PACKAGE)]
+    function = libraries.whole[sums_symbol(source.name, PACKAGE)]
     function.argtypes, function.restype = [ctypes.c_ssize_t, ctypes.c_void_p, ctypes.c_void_p], ctypes.c_int
     arrays, passed = structures(
         source.methods[0], terms.bound((), named), terms.indices, np.dtype(np.float64)

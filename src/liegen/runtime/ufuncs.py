@@ -69,6 +69,24 @@ def made_gufunc(loop: Any, told: Any, types: Sequence[int], name: str, inputs: i
     return Made(made, (loop, told, loops, data, codes, texts))
 
 
+@cache
+def joined_gufunc(libraries: tuple[ctypes.CDLL, ...], symbol: str) -> Made:
+    """One gufunc with the loops of several shared objects, in the order in which NumPy tries their types.
+
+    It is kept for the life of the process, as the libraries are.
+    """
+    parts = [_Description.in_dll(library, symbol) for library in libraries]
+    d, operands = parts[0], parts[0].nin + parts[0].nout
+    loops, data = ((ctypes.c_void_p * len(parts))() for _ in range(2))
+    for k, part in enumerate(parts):
+        loops[k] = ctypes.cast(part.loops, ctypes.POINTER(ctypes.c_void_p))[0]
+    codes = b"".join(ctypes.string_at(part.types, operands) for part in parts)
+    types = (ctypes.c_char * len(codes))(*codes)
+    pointers = [ctypes.addressof(part) for part in (loops, data, types)]
+    made = _constructor()(*pointers, len(parts), d.nin, d.nout, _NO_IDENTITY, d.name, d.doc, 0, d.signature)
+    return Made(made, (libraries, loops, data, types))
+
+
 def gufunc(library: ctypes.CDLL, symbol: str) -> np.ufunc:
     """The gufunc that the shared object describes under ``symbol``.
 
