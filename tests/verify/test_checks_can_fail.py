@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from liegen import R1, SE3, abs, factor, library, log, native, require, sqrt
+from liegen import R1, SE3, abs, factor, library, log, maximum, native, require, sqrt
 from liegen.errors import DomainError, ToolError
 from liegen.program import Program
 from liegen.program.rewrite import Builder
@@ -128,13 +129,56 @@ def test_a_domain_that_no_sample_meets_is_named():
 def test_fewer_than_half_of_the_samples_is_a_failure():
     @factor
     def rarely(x: R1):
-        return log(x + 1.0 - 2.0) + x
+        return x / maximum(x - 1.0, 0.0)
 
     report = verify([rarely], samples=30)
     checks = {c.name: c for c in report.factors[0].checks}
     assert not checks["value"].passed
     assert "could be compared" in checks["value"].note
     assert 0 < checks["value"].kept < 15
+
+
+def test_samples_are_drawn_where_roots_and_logarithms_have_values():
+    """Half of all numbers have no logarithm: they are drawn again, and no sample is left out for it."""
+
+    @factor
+    def of_a_logarithm(x: R1, *, z: R1):
+        return x - log(z) - sqrt(z)
+
+    drawn = draw_samples(of_a_logarithm, 60, 0)
+    assert len(drawn.inside) == 60
+    assert all(s.values["z"][0] >= 0 for s in drawn.inside)
+    assert drawn.outside == drawn.refused == ()
+
+
+def test_a_factor_that_is_finite_nowhere_is_told_with_line_and_cure_and_without_warnings(recwarn):
+    @factor
+    def no_logarithm(x: SE3, *, z: R1):
+        return log(-x.range([0.0, 0.0, 0.0]) - 1.0) - z
+
+    @factor
+    def no_quotient(x: R1, *, z: R1):
+        return x / (z - z)
+
+    report = verify([no_logarithm, no_quotient], samples=5, workers=1)
+    notes = [f.checks[0].note for f in report.factors]
+    assert not any(f.passed for f in report.factors)
+    assert re.search(r"log at test_checks_can_fail.py:\d+ needs -norm\(.*> 0.*draw inside with", notes[0])
+    assert re.search(r"'div' at test_checks_can_fail.py:\d+ .*require\(", notes[1])
+    assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]
+
+
+def test_cases_without_a_sample_inside_say_which_requirement_refuses_them():
+    def far(draw, case):
+        return {"x": R1(2.0 if case.spread > 1 else 0.5), "z": R1(0.0)}
+
+    @factor(sample=far)
+    def near_only(x: R1, *, z: R1):
+        require(x < 1.0, "x is far")
+        return x - z
+
+    refused = draw_samples(near_only, 60, 0).refused
+    assert "kilometres: no sample inside the domain, outside `x is far`" in refused
 
 
 def test_samples_are_the_same_in_every_run_and_cover_every_case():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING
@@ -46,6 +47,8 @@ ASKED = {"Gauss-Newton": "J^T J"}
 SINGLE = "single"
 #: The note of a factor without a stated domain, not worth a line.
 EVERYWHERE = "everywhere"
+#: The check whose samples are its own.
+SOLVED = "singular points"
 #: Skipped cases that are named for a factor.
 LISTED = 6
 
@@ -126,7 +129,7 @@ def _print(report: Report, seconds: float) -> None:
     for factor in report.factors:
         for line in _remarks(factor):
             say(line)
-    for line in _skipped(report.factors):
+    for line in _skipped(report.factors, report.samples):
         say(line)
     _print_single(report.factors)
     _print_off_unit(report.factors)
@@ -198,26 +201,30 @@ def _remarks(factor: FactorReport) -> Iterable[str]:
             yield f"{factor.factor}: {check.name}: {check.note}"
 
 
-def _skipped(factors: Iterable[FactorReport]) -> Iterable[str]:
+def _skipped(factors: Iterable[FactorReport], samples: int) -> Iterable[str]:
     """The samples that were left out, once for all factors with the same."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for factor in factors:
-        groups.setdefault(tuple(_left_out(factor.checks)), []).append(factor.factor)
+        groups.setdefault(tuple(_left_out(factor.checks, samples)), []).append(factor.factor)
     for said, names in groups.items():
         if said:
             yield f"{', '.join(names)}: left out: {'; '.join(said)}"
 
 
-def _left_out(checks: Iterable[Check]) -> Iterable[str]:
-    """``identity, coincident in Taylor (why)``: cases with the same reason in the same checks together."""
+def _left_out(checks: Iterable[Check], samples: int) -> Iterable[str]:
+    """``12 of 128 in Taylor (why): identity, coincident``, one reason in the same checks together."""
     checked: dict[tuple[str, str], list[str]] = {}
+    counts: Counter[tuple[str, str]] = Counter()
     for check in checks:
-        for entry in dict.fromkeys(check.skipped):
+        for entry, times in Counter(check.skipped).items():
             case, _, reason = entry.partition(": ")
             checked.setdefault((reason, case), []).append(check.name)
+            counts[reason, case] = max(counts[reason, case], times)
     cases: dict[tuple[str, str], list[str]] = {}
     for (reason, case), names in checked.items():
         cases.setdefault((reason, ", ".join(names)), []).append(case)
     for (reason, names), where in cases.items():
+        total = sum(counts[reason, case] for case in where)
+        of = "" if names == SOLVED else f" of {samples}"
         shown = ", ".join(where[:LISTED]) + (", ..." if len(where) > LISTED else "")
-        yield f"{shown} in {names} ({reason})"
+        yield f"{total}{of} in {names} ({reason}): {shown}"

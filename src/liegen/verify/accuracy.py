@@ -44,7 +44,7 @@ def _check(
     name: str, expected: Expected, found: Sequence[tuple[str, Comparison]], refused: Sequence[str]
 ) -> Check:
     kept = min((int(c.block.kept.sum()) for _, c in found), default=0)
-    skipped = (*expected.skipped, *(f"{case}: no sample inside the domain" for case in refused))
+    skipped = (*expected.skipped, *refused)
     worst, where = _worst(expected, ((backend, c.block.name, c.ratio) for backend, c in found))
     enough = 2 * kept >= len(expected.samples) + len(refused) and kept > 0
     few = "" if enough else f"only {kept} of {len(expected.samples) + len(refused)} samples could be compared"

@@ -41,7 +41,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Samples:
-    """Samples inside the domain, some outside, and the cases that found no sample inside."""
+    """Samples inside the domain, some outside, and the cases that found none inside: ``case: reason``."""
 
     inside: tuple[Sample, ...]
     outside: tuple[Sample, ...]
@@ -67,23 +67,27 @@ def schedule(name: str, count: int, seed: int) -> tuple[tuple[Case, int], ...]:
 def draw_samples(function: AnyFunction, count: int, seed: int, inside: Inside | None = None) -> Samples:
     """Draw ``count`` samples, each from a generator of its own.
 
-    ``inside`` tells the domain (the mpmath reference by default). Raises DefinitionError for a sampler that
-    does not give every argument its typed value.
+    ``inside`` tells the domain. By default it is what the mpmath reference says of each ``require``, and that
+    roots, logarithms, acos and asin have real values. Raises DefinitionError for a sampler that does not give
+    every argument its typed value.
     """
-    within = inside or _reference_domain()
+    why = _reference_reason() if inside is None else _given_reason(inside)
     kept: list[Sample] = []
     outside: list[Sample] = []
     refused: list[str] = []
     for case, turn in schedule(function.name, count, seed):
         draw = Draw(generator_for(seed, function.name, case.name, turn))
+        reason = None
         for _ in range(TRIES):
             sample = draw_one(function, draw, case)
-            if within(function.graph, sample.values):
+            reason = why(function.graph, sample.values)
+            if reason is None:
                 kept.append(sample)
                 break
-            outside.append(sample)
+            if reason.stated:
+                outside.append(sample)
         else:
-            refused.append(case.name)
+            refused.append(f"{case.name}: no sample inside the domain, {reason.text if reason else ''}")
     return Samples(tuple(kept), tuple(outside[:count]), tuple(refused))
 
 
@@ -140,8 +144,29 @@ def program_domain(function: AnyFunction) -> Inside:
     return inside
 
 
-def _reference_domain() -> Inside:
-    """Loaded here, so that drawing for ``generate`` does not need it."""
-    from .reference import holds
+@dataclass(frozen=True)
+class Reason:
+    """Why values are outside of a domain; ``stated``: by a ``require``."""
 
-    return lambda graph, values: all(holds(graph, values))
+    text: str
+    stated: bool = True
+
+
+def _reference_reason() -> Callable[[Graph, Values], Reason | None]:
+    """Loaded here, so that drawing for ``generate`` does not need it."""
+    from .natural import unnatural
+    from .reference import evaluate
+
+    def reason(graph: Graph, values: Values) -> Reason | None:
+        evaluation = evaluate(graph, values)
+        for stated, holds in zip(graph.domain, evaluation.holds, strict=True):
+            if not holds:
+                return Reason(f"outside `{stated.message}`")
+        text = unnatural(evaluation)
+        return Reason(text, stated=False) if text else None
+
+    return reason
+
+
+def _given_reason(inside: Inside) -> Callable[[Graph, Values], Reason | None]:
+    return lambda graph, values: None if inside(graph, values) else Reason("outside")

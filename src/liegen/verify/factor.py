@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.errors import DomainError
 from liegen.trace import Graph
 
 from .accuracy import Results, accuracy, agreement
@@ -19,6 +20,7 @@ from .gradient import gradient, not_applicable
 from .in_place import in_place
 from .normal_terms import normal_terms
 from .report import Check, FactorReport
+from .sanity import check_finite
 from .single import single
 from .singular import singular_points
 from .taylor import taylor
@@ -62,6 +64,9 @@ def _checks(
         return (_nothing(function, drawn),)
     computed = backends(function.kernel, place)
     results = {b.name: b.evaluate(batch(drawn.inside)) for b in computed}
+    hopeless = _finite_nowhere(function, results[TAKEN if function.kernel.variables else f"{TAKEN}, value"])
+    if hopeless:
+        return (hopeless,)
     weighting = function.weighting if function.weighting and function.weighting.loss else None
     expected = expect(function, drawn.inside, conditioned=conditioned)
     floats = [single(function.kernel, place, drawn.inside, drawn.outside)]
@@ -133,12 +138,23 @@ def _one_at_a_time(backend: Backend, drawn: Samples) -> Mapping[str, Array]:
 
 
 def _nothing(function: AnyFunction, drawn: Samples) -> Check:
-    messages = "; ".join(d.message for d in function.graph.domain)
+    reasons = dict.fromkeys(entry.partition(": ")[2] for entry in drawn.refused)
     note = (
-        f"no sample inside the domain ({messages}) was found in {len(drawn.refused)} cases; "
-        "draw inside it with @factor(sample=...)"
+        f"{function.graph.site}: {function.name}: {'; '.join(reasons)}, "
+        f"in all of {len(drawn.refused)} cases; correct it, or draw inside with @factor(sample=...)"
     )
     return Check("value", False, float("nan"), 0.0, "", "", 0, drawn.refused, note)
+
+
+def _finite_nowhere(function: AnyFunction, results: Results) -> Check | None:
+    """A failure where an output or a Jacobian is not finite at any sample, with line and cure."""
+    if all(np.isfinite(a.reshape(len(a), -1)).all(axis=1).any() for a in results.values()):
+        return None
+    try:
+        check_finite(function)
+    except DomainError as error:
+        return Check("value", False, float("nan"), 0.0, "", "", 0, note=str(error))
+    return None
 
 
 def _compiled(place: Workspace) -> Check:

@@ -10,10 +10,13 @@ from typing import Any
 
 from liegen.manifolds import Node
 from liegen.trace import Graph
+from liegen.trace.formulas import texts_of
 
 from .reference.calls import is_elementwise
 from .reference.interpreter import Evaluation
 
+#: Longer arguments are not printed.
+SHORT = 60
 #: How far outside an argument may be by rounding.
 ROUNDING = 1e-12
 
@@ -44,8 +47,14 @@ def natural_nodes(graph: Graph) -> Iterator[tuple[Node, Callable[[Any], bool], s
 
 def is_natural(evaluation: Evaluation) -> bool:
     """Whether all of them have real values; what is not a number itself is not judged."""
-    return all(
-        holds(x) or x != x
-        for node, holds, _ in natural_nodes(evaluation.graph)
-        for x in evaluation[node.operands[0]]
-    )
+    return not unnatural(evaluation)
+
+
+def unnatural(evaluation: Evaluation) -> str:
+    """``log at factors.py:7 needs z > 0`` for the first that has none; empty where all have."""
+    for node, holds, condition in natural_nodes(evaluation.graph):
+        if not all(holds(x) or x != x for x in evaluation[node.operands[0]]):
+            text = texts_of(evaluation.graph, {})[id(node.operands[0])].text
+            shown = condition.format(text if len(text) <= SHORT else "its argument")
+            return f"{node.operation.name} at {node.site} needs {shown}"
+    return ""
