@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from keyword import iskeyword
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -58,7 +60,7 @@ def coerced(
     if numbers.shape[-len(shape) :] != shape:
         cure = "; a batch of scalars is array[:, None]" if shape == (1,) else ""
         raise DefinitionError(f"{needed}, this one has shape {numbers.shape}{cure}")
-    flat = numbers.reshape(*numbers.shape[: numbers.ndim - len(shape)], -1)
+    flat = numbers.reshape(*numbers.shape[: numbers.ndim - len(shape)], prod(shape))
     coords = [flat[..., k][()] for k in range(flat.shape[-1])]
     return manifold.holding(coords if stored.own else stored.read(coords))
 
@@ -89,7 +91,7 @@ def text_of(given: Any, what: str) -> str:
 def name_of(given: Any, what: str) -> str:
     """A name that a user gives, or none. Raises DefinitionError for what is no identifier."""
     name = text_of(given, what)
-    if name and not name.isidentifier():
+    if name and (not name.isidentifier() or iskeyword(name)):
         raise DefinitionError(f"{what} is a name in Python, with letters, digits and _, got {given!r}")
     return name
 

@@ -223,7 +223,8 @@ class Function(Generic[P, T]):
                 f"{self.plain.site}: {self.name} is a @function; noise and loss are of a @factor, "
                 "which has a residual"
             )
-        return self._copy(self.declared, name, doc, None, read_weighting(noise, loss, mode, self.name))
+        where = f"{self.plain.site}: {self.name}"
+        return self._copy(self.declared, name, doc, None, read_weighting(noise, loss, mode, where))
 
     def _changed(
         self, names: tuple[str, ...], name: str, doc: str, sample: Sampler | None, *, variable: bool

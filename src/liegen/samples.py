@@ -104,7 +104,7 @@ def sampler_of(function: Function[..., Any]) -> Sampler:
     DefinitionError that names the factor, the sampler and the argument.
     """
     parameters = function.plain.parameters
-    own: Callable[..., object] | None = function.sampler  # whatever it returns is checked
+    own = function.sampler
     if own is None:
         manifolds: dict[str, Any] = {p.name: p.manifold for p in parameters}
         return default_sampler(manifolds)
@@ -116,7 +116,7 @@ def sampler_of(function: Function[..., Any]) -> Sampler:
     def sample(draw: Draw, case: Case) -> Mapping[str, Value]:
         try:
             with no_exit():
-                given = own(draw, case)
+                given = cast(object, own(draw, case))
                 values = {**cast(Mapping[str, Any], given)} if isinstance(given, Mapping) else None
         except KeyboardInterrupt:
             raise

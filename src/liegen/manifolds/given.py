@@ -19,6 +19,8 @@ _KINDS = {"c": "complex numbers", "U": "text", "S": "text", "M": "dates", "m": "
 
 def real_numbers(given: Any, what: str) -> NDArray[np.float64]:
     """An array of doubles. Raises DefinitionError, which begins with ``what``, for what is no real number."""
+    if np.ma.is_masked(given):
+        raise DefinitionError(f"{what}, got an array with masked entries, which have no number")
     try:
         array = np.asarray(given)
     except (TypeError, ValueError):
@@ -26,7 +28,10 @@ def real_numbers(given: Any, what: str) -> NDArray[np.float64]:
     if array.dtype.kind in "fiub":
         return array.astype(np.float64, copy=False)
     if array.dtype.kind == "O" and array.size and all(isinstance(x, Real) for x in array.flat):
-        return array.astype(np.float64)  # whole numbers beyond 64 bits, fractions
+        try:
+            return array.astype(np.float64)  # whole numbers beyond 64 bits, fractions
+        except OverflowError:
+            raise DefinitionError(f"{what}, got a number that is too large for a double") from None
     raise DefinitionError(f"{what}, got {spoken(given)}")
 
 

@@ -51,6 +51,8 @@ def as_element(operation: str, x: V, y: V | object) -> V:
         return y  # pyright: ignore[reportReturnType]
     form, what = x.form, f"{here()}: {operation} of {called(x)} needs another {x.form.name}"
     numbers = real_numbers(y, what)
+    if numbers.ndim == 0 and form.size == 1:
+        numbers = numbers[None]
     if numbers.ndim == 0 or numbers.shape[-1] != form.size:
         tangent = numbers.ndim and numbers.shape[-1] == form.dim and isinstance(form, GroupForm)
         cure = f"; {form.name}.exp makes an element of a tangent vector" if tangent else ""

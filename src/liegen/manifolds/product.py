@@ -15,6 +15,7 @@ from liegen.algebra.linear import eye, transpose
 from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords
+from .given import LARGEST
 from .group import Group, Manifold, as_tangent
 from .node import Operation, Value, apply, called, from_numbers, here
 from .part import part
@@ -39,9 +40,20 @@ class Product(Group):
     part_notes: ClassVar[Mapping[str, tuple[Any, ...]]] = {}
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
-        super().__init_subclass__(**kwargs)
+        if kwargs:
+            raise DefinitionError(
+                f"{here()}: {cls.__name__}: a product takes no {', '.join(kwargs)}=; annotate its parts, "
+                "as in class State(Product): pose: SE3"
+            )
+        super().__init_subclass__()
         frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
         annotations = _annotations(cls, frame.f_globals, frame.f_locals)
+        for name in annotations:
+            if name in vars(cls):
+                raise DefinitionError(
+                    f"{here()}: {cls.__name__}: part {name!r} has a default, which parts cannot have; "
+                    f"write {name}: {_spelled(annotations[name])} alone"
+                )
         own = {name: _part_class(cls, name, _bare(kind)) for name, kind in annotations.items()}
         notes = {name: get_args(kind)[1:] for name, kind in annotations.items() if _bare(kind) is not kind}
         cls.part_classes = {**cls.part_classes, **own}
@@ -53,6 +65,11 @@ class Product(Group):
         form = product_form(
             cls.__name__, list(cls.part_classes), [kind.form for kind in cls.part_classes.values()]
         )
+        if form.size > LARGEST:
+            raise DefinitionError(
+                f"{here()}: {cls.__name__} stores {form.size} numbers, the limit is {LARGEST}; make several "
+                "arguments of it, or a batch"
+            )
         cls.form = form
         for k, name in enumerate(cls.part_classes):
             setattr(cls, name, property(partial(_read, k), doc=f"The part {name}."))
@@ -130,6 +147,10 @@ def _coerced(cls: type[Product], name: str, given: Any) -> Value:
         shown = called(given) if isinstance(given, Value) else type(given).__name__
         raise DefinitionError(f"{here()}: {where} needs {kind.__name__}, got {shown}")
     return given
+
+
+def _spelled(annotation: Any) -> str:
+    return annotation.__name__ if isinstance(annotation, type) else str(annotation)
 
 
 def _annotations(cls: type, names: dict[str, Any], local: Any) -> dict[str, Any]:

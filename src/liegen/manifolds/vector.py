@@ -153,14 +153,18 @@ class R(Vector):
     __slots__ = ()
 
     def __init_subclass__(cls, dim: int = 0, **kwargs: Any) -> None:
-        super().__init_subclass__(**kwargs)
-        cls.form = rform(dimension(dim, cls.__name__, f"class {cls.__name__}(R, dim=12)"))
+        usage = f"class {cls.__name__}(R, dim=12)"
+        if kwargs:
+            raise DefinitionError(f"{here()}: {cls.__name__}: only dim= is known; write {usage}")
+        super().__init_subclass__()
+        cls.form = rform(dimension(dim, f"{here()}: {cls.__name__}", usage))
 
     def __new__(cls, *entries: float | Vector) -> Self:
         """From its entries, numbers or scalars: ``R3(1, 2, x[0])``."""
         if cls is R:
             size: Any = entries[0] if len(entries) == 1 else entries
-            sized: Any = vector_class(dimension(size, "R", "R(12), or R3(1, 2, 3) for a vector of numbers"))
+            usage = "R(12), or R3(1, 2, 3) for a vector of numbers"
+            sized: Any = vector_class(dimension(size, f"{here()}: R", usage))
             return sized
         v = stack(*entries)
         if len(v) != cls.form.dim:

@@ -237,4 +237,8 @@ LOSSES: Mapping[str, Loss] = {
 
 def known(what: str, name: Any, table: Mapping[str, Any]) -> str:
     """What to say of a name that the table lacks; empty where it has it."""
-    return "" if name in table else f"unknown {what} {name!r}; choose from {', '.join(table)}"
+    return (
+        ""
+        if isinstance(name, str) and name in table
+        else f"unknown {what} {name!r}; choose from {', '.join(table)}"
+    )

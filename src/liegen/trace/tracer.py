@@ -11,11 +11,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
+import numpy as np
+
 from liegen.charts import Preset
 from liegen.errors import DefinitionError, LiegenError, Site
 from liegen.exits import no_exit
 from liegen.manifolds import Condition, Manifold, Value, Vector
-from liegen.manifolds.node import Leaf, Node, here, node_of, parameter, raised_at
+from liegen.manifolds.given import spoken
+from liegen.manifolds.node import Leaf, Node, called, here, node_of, parameter, raised_at
 from liegen.manifolds.vector import VectorLike, as_vector
 from liegen.text import exception_text
 
@@ -85,9 +88,15 @@ def require(condition: Condition | bool, message: str) -> None:
     """State where a factor is defined.
 
     Outside, generated NumPy and C return NaN, C also the condition's bit, and verification draws its samples
-    inside. A condition on constants that is false is an error at once.
+    inside. A condition on constants that is false is an error at once. Raises DefinitionError too for what is
+    no condition, and for a message that is no text.
     """
     record = _record.get()
+    usage = 'write require(p[2] > 0, "the point is in front of the camera")'
+    if not isinstance(condition, Condition | bool | np.bool_):  # pyright: ignore[reportUnnecessaryIsInstance]
+        got = called(condition) if isinstance(condition, Value) else spoken(condition)
+        raise DefinitionError(f"{here()}: require needs a condition first, got {got}; {usage}")
+    _require_text("require", message, f"second, {usage}")
     if isinstance(condition, Condition) and condition.traced and record is not None:
         record.domain.append(Domain(node_of(condition), message))
     elif not bool(condition):
@@ -103,14 +112,19 @@ def singular(message: str, *zeros: VectorLike) -> None:
     NaN and a status bit, use :func:`require`. Raises DefinitionError for a message that is no text.
     """
     record = _record.get()
-    if not isinstance(message, str):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise DefinitionError(
-            f"{here()}: singular needs a text first, got a {type(message).__name__}; "
-            'write singular("point on the axis"), or singular("point on the axis", norm(q[:2]))'
-        )
+    usage = 'write singular("point on the axis"), or singular("point on the axis", norm(q[:2]))'
+    _require_text("singular", message, f"first, {usage}")
     values = [as_vector(v, where="singular") for v in zeros]
     if record is not None:
         record.singular.append(Singular(message, tuple(map(node_of, values)), here()))
+
+
+def _require_text(function: str, given: object, where: str) -> None:
+    """Raise DefinitionError unless a message has text."""
+    place, _, usage = where.partition(", ")
+    if not isinstance(given, str) or not given.strip():
+        got = "an empty text" if isinstance(given, str) else f"a {type(given).__name__}"
+        raise DefinitionError(f"{here()}: {function} needs a text {place}, got {got}; {usage}")
 
 
 def inlined(
