@@ -130,11 +130,9 @@ def evaluate(
 
 
 def _read(name: str, argument: str, value: npt.ArrayLike, size: int) -> Array:
-    array = np.asarray(value)
+    array = np.asarray(value) if size > 1 else np.atleast_1d(value)  # a number stands for a vector of one
     if array.dtype.kind not in "fiub":
         raise TypeError(f"{name}: argument {argument}: expected real numbers, got {array.dtype}")
-    if array.ndim == 0 and size == 1:  # a number stands for a vector of one
-        array = array[None]
     if array.ndim == 0 or array.shape[-1] != size:
         raise ValueError(f"{name}: argument {argument}: expected shape (..., {size}), got {array.shape}")
     return array.astype(np.float64, copy=False)
