@@ -12,7 +12,8 @@ import click
 
 from liegen.errors import OutputError, ToolError
 
-from .shared import SEED, chosen, count, names_option, new_file, old_file, source_argument, table, tracked
+from .ranges import SEED, Whole
+from .shared import chosen, count, names_option, new_file, old_file, source_argument, table, tracked
 
 if TYPE_CHECKING:
     from liegen.sources import AnyFunction
@@ -34,16 +35,16 @@ OPTIONS = {"chart": "peers", "all_flags": "peers", "compare": "instructions", "w
 @click.option("--instructions", is_flag=True, help="Count the instructions of each call with valgrind.")
 @click.option("--growth", is_flag=True, help="Time code generation: cold starts, chains, wide residuals.")
 @click.option(
-    "--calls", type=click.IntRange(1, 10_000_000), default=10_000, show_default=True,
+    "--calls", type=Whole(1, 10_000_000), default=10_000, show_default=True,
     help="Distinct inputs in a round (--peers).",
 )  # fmt: skip
 @click.option(
-    "--rounds", type=click.IntRange(1, 100_000), default=100, show_default=True,
+    "--rounds", type=Whole(1, 100_000), default=100, show_default=True,
     help="Rounds; every round runs each variant once.",
 )  # fmt: skip
 @click.option("--seed", type=SEED, default=0, show_default=True, help="Seed of the inputs.")
 @click.option(
-    "--largest", type=click.IntRange(1, 100_000_000), default=1_000_000, show_default=True,
+    "--largest", type=Whole(1, 100_000_000), default=1_000_000, show_default=True,
     help="Largest batch.",
 )  # fmt: skip
 @click.option(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .ranges import COUNT, SEED, TOLERANCE
 from .shared import Convention, chosen, convention_options, count, source_argument, table
 
 if TYPE_CHECKING:
@@ -26,10 +27,10 @@ if TYPE_CHECKING:
     help="Where a factor of GTSAM does not tell an argument of NAME: the object in the same file.",
 )  # fmt: skip
 @convention_options
-@click.option("--samples", type=click.IntRange(min=1), default=24, show_default=True, help="Random samples.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the samples.")
+@click.option("--samples", type=COUNT, default=24, show_default=True, help="Random samples.")
+@click.option("--seed", type=SEED, default=0, show_default=True, help="Seed of the samples.")
 @click.option(
-    "--tolerance", type=click.FloatRange(min=0, min_open=True), default=1e-7, show_default=True,
+    "--tolerance", type=TOLERANCE, default=1e-7, show_default=True,
     help="Largest difference relative to max(1, largest entry).",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")

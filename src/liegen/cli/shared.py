@@ -21,11 +21,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-#: Seeds of random samples.
-SEED = click.IntRange(0, 2**63 - 1)
-#: How many samples of a factor.
-COUNT = click.IntRange(1, 100_000)
-
 
 def new_file(context: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
     """A file to write, in a folder that is there: checked before anything is measured."""

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from .accuracy import run_accuracy
+from .ranges import COUNT, SEED
 from .shared import (
-    COUNT,
-    SEED,
     Convention,
     bar,
     chosen,
