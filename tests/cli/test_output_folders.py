@@ -240,6 +240,26 @@ def test_a_damaged_manifest_is_named(kind, folder):
     assert files("out") == before
 
 
+@pytest.mark.parametrize("kind", MANIFESTS)
+def test_generate_does_not_write_beside_or_over_a_damaged_manifest(kind, folder):
+    """One whose files can be read is good enough: only its command is not understood."""
+    text, message = MANIFESTS[kind]
+    Path("out/a_gen").mkdir(parents=True)
+    Path("out/a_gen.json").write_text(text)
+    readable = "command" in kind and "number" not in kind and "null" not in kind
+    for source in ("b.py", "a.py"):
+        before = files("out")
+        over = source == "a.py" and readable and "liegen generate a.py " not in text
+        told = run("generate", source, "-o", "out", "-t", "numpy", code=0 if readable and not over else 2)
+        if over:
+            assert "out/a_gen.json belongs to the package of" in told
+        elif not readable:
+            assert "out/a_gen.json" in told
+            assert message in told
+        if over or not readable:
+            assert files("out") == before
+
+
 def test_a_pipe_in_place_of_a_manifest_is_not_waited_for(folder):
     Path("out").mkdir()
     os.mkfifo("out/a_gen.json")

@@ -20,17 +20,22 @@ CALLS = (
     "os.scandir", "os.chmod", "os.utime", "tempfile.mkdtemp", "liegen.write", "fcntl.flock",
 )  # fmt: skip
 
-_watch: Callable[[str, str], None] | None = None
+#: Gets the event, its path, and the second path of a call that has two.
+Watch = Callable[[str, str, str], None]
+TWO_PATHS = ("os.rename", "os.link", "os.symlink")
+
+_watch: Watch | None = None
 _installed = False
 
 
 def _hook(event: str, arguments: tuple[object, ...]) -> None:
     if _watch is not None and event in CALLS:
-        _watch(event, str(arguments[0]) if arguments else "")
+        path, to = [*map(str, arguments[:2]), "", ""][:2]
+        _watch(event, path, to if event in TWO_PATHS else "")
 
 
 @contextmanager
-def watched(watch: Callable[[str, str], None], below: Path, patch: object) -> Iterator[None]:
+def watched(watch: Watch, below: Path, patch: object) -> Iterator[None]:
     """Call ``watch`` before each call of the system on paths below a folder, while the block runs."""
     global _watch, _installed
     if not _installed:
@@ -43,9 +48,9 @@ def watched(watch: Callable[[str, str], None], below: Path, patch: object) -> It
         sys.audit("liegen.write", str(self))
         return write_bytes(self, data)
 
-    def filtered(event: str, path: str) -> None:
+    def filtered(event: str, path: str, to: str) -> None:
         if path.startswith(str(below)) or event == "fcntl.flock":
-            watch(event, path)
+            watch(event, path, to)
 
     with patch.context() as m:  # type: ignore[attr-defined]
         m.setattr(Path, "write_bytes", halves)
@@ -66,7 +71,7 @@ class Counter:
     def seen(self) -> int:
         return len(self.events)
 
-    def __call__(self, event: str, path: str) -> None:
+    def __call__(self, event: str, path: str, to: str) -> None:
         self.events.append(event)
         if self.first <= self.seen <= self.last:
             raise OSError(self.code, os.strerror(self.code), path)
@@ -78,7 +83,7 @@ class Killer:
     def __init__(self, at: int) -> None:
         self.at, self.seen = at, 0
 
-    def __call__(self, event: str, path: str) -> None:
+    def __call__(self, event: str, path: str, to: str) -> None:
         self.seen += 1
         if self.seen == self.at:
             os.kill(os.getpid(), signal.SIGKILL)

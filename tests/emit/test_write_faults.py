@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import signal
+import subprocess
 import tempfile
 import threading
 import time
@@ -13,7 +15,7 @@ from pathlib import Path
 import pytest
 from emit_kernels import between_r2, examples, wheel_step
 from emit_tools import REGENERATE
-from fault_tools import Counter, Killer, forked, watched
+from fault_tools import Counter, Killer, Watch, forked, watched
 
 from liegen.emit import check_tree, journal, render, write_tree
 from liegen.errors import OutputError
@@ -21,6 +23,7 @@ from liegen.errors import OutputError
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="calls of POSIX")
 
 Files = dict[str, str]
+CHATTR = shutil.which("chattr")
 
 
 def files_of(kernels, targets):
@@ -85,7 +88,7 @@ def calls(tmp_path: Path, change: tuple[Files, Files], monkeypatch) -> int:
     return len(events(tmp_path, change, monkeypatch))
 
 
-def refusal(fails: Counter, place: Path, files: Files, monkeypatch) -> str:
+def refusal(fails: Watch, place: Path, files: Files, monkeypatch) -> str:
     """What is said of a run some of whose calls fail, empty where it succeeds."""
     try:
         with watched(fails, place, monkeypatch):
@@ -188,6 +191,30 @@ def test_killed_at_every_call(change, trees, tmp_path, monkeypatch):
         killed_and_recovered(tmp_path / f"{k}", *trees[change], after, k, monkeypatch)
 
 
+def test_killed_while_it_makes_the_first_tree(trees, tmp_path, monkeypatch):
+    new, moment, ended, nothing = trees["grows"][0], 1, False, 0
+    after = expected(tmp_path, new)
+
+    def run(place, at):
+        with watched(Killer(at), place, monkeypatch):
+            write_tree(new, place)
+
+    while not ended:
+        place = tmp_path / f"{moment}" / "made" / "too"
+        ended = forked(lambda: run(place, moment)) == 0  # noqa: B023
+        if place.exists():
+            with journal.locked(place):
+                journal.recovered(place)
+            assert snapshot(place) in ({}, after), moment
+            nothing += snapshot(place) == {}
+        write_tree(new, place)
+        assert snapshot(place) == after
+        assert stages(place) == []
+        moment += 1
+    assert moment > 30
+    assert nothing > 20
+
+
 @pytest.mark.parametrize("change", CHANGES)
 def test_killed_while_it_recovers(change, trees, tmp_path, monkeypatch):
     old, new = trees[change]
@@ -254,7 +281,7 @@ def test_an_interrupt_puts_everything_back(trees, tmp_path, monkeypatch):
     before = snapshot(place)
     moves = 0
 
-    def interrupt(event, path):
+    def interrupt(event, path, to):
         nonlocal moves
         moves += event == "os.rename"
         if moves == 5:
@@ -412,6 +439,64 @@ def test_a_folder_that_is_read_only(closed, trees, tmp_path):
     (out / closed).chmod(0o755)
     assert snapshot(out) == before
     assert stages(out) == []
+
+
+@pytest.mark.parametrize("held", ["c/demo_math.h", "demo/_support.py", "c", "demo", "."])
+def test_what_the_system_does_not_let_change(held, trees, tmp_path_factory):
+    """Immutable files and folders; only root can make them so, and only on file systems that know them."""
+    large, _ = trees["shrinks"]
+    new = {path: text + "\n" for path, text in large.items()}
+    out = tmp_path_factory.mktemp("immutable")
+    write_tree(large, out)
+    before, place = snapshot(out), str(out / held)
+    made = subprocess.run(["chattr", "+i", place], capture_output=True, check=False) if CHATTR else None
+    if made is None or made.returncode:
+        pytest.skip("no immutable files here")
+    try:
+        with pytest.raises(OutputError, match=r"Operation not permitted.*nothing was changed"):
+            write_tree(new, out)
+    finally:
+        subprocess.run(["chattr", "-i", place], check=True)
+    assert snapshot(out) == before
+    assert stages(out) == []
+    write_tree(new, out)
+    assert check_tree(new, out).ok
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_one_path_that_is_refused_whenever_it_is_touched(change, trees, tmp_path, monkeypatch):
+    """As an immutable file is, on any file system: putting back must not need that path either."""
+    old, new = trees[change]
+    after = expected(tmp_path, new)
+    for number, name in enumerate(sorted(set(old) | set(new))):
+        place = fresh(tmp_path / f"{number}", old)
+        before = snapshot(place)
+
+        def refuse(event, path, to, held=str(place / name)):
+            if event in ("os.rename", "os.remove", "os.link") and held in (path, to):
+                raise OSError(errno.EPERM, os.strerror(errno.EPERM), path)
+
+        told = refusal(refuse, place, new, monkeypatch)
+        assert snapshot(place) == (before if told else after), (name, told)
+        assert stages(place) == []
+        if told:
+            assert "Operation not permitted" in told
+            assert "nothing was changed" in told
+
+
+def test_the_current_folder_was_removed(trees, tmp_path):
+    (tmp_path / "gone").mkdir()
+
+    def fail():
+        os.chdir(tmp_path / "gone")
+        (tmp_path / "gone").rmdir()
+        with pytest.raises(OutputError, match=r"the current folder was removed; change to another one"):
+            write_tree(trees["grows"][0], Path("out"))
+        write_tree(trees["grows"][0], tmp_path / "whole")
+
+    assert forked(fail) == 0
+    assert check_tree(trees["grows"][0], tmp_path / "whole").ok
+    assert not (tmp_path / "gone").exists()
 
 
 def test_a_limit_on_the_size_of_files(trees, tmp_path):
