@@ -161,6 +161,16 @@ def test_an_orphan_that_the_manifest_lists_goes_with_generate(folder):
     run("check", "out")
 
 
+def test_the_cure_of_a_missing_file_works(folder):
+    run("generate", "a.py", "-o", "out")
+    Path("out/c/first.c").unlink()
+    Path("out/c/old.c").write_text("")
+    told = run("check", "out", code=1)
+    assert "missing  out/c/first.c" in told
+    mend(told)
+    assert "all up to date" in run("check", "out")
+
+
 def test_a_link_in_place_of_a_file_is_a_change(folder):
     """Not followed: neither to say that all is well, nor to write where it leads."""
     run("generate", "a.py", "-o", "out")

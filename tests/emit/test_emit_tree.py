@@ -125,6 +125,16 @@ def test_refuses_a_link_to_a_folder_elsewhere(tmp_path: Path) -> None:
     assert list((tmp_path / "elsewhere").iterdir()) == []
 
 
+def test_a_link_to_a_file_with_the_right_text_becomes_a_file(tmp_path: Path) -> None:
+    files, out = files_of(examples()), tmp_path / "out"
+    write_tree(files, out)
+    (out / "c" / "wheel_step.c").rename(tmp_path / "elsewhere.c")
+    (out / "c" / "wheel_step.c").symlink_to(tmp_path / "elsewhere.c")
+    assert write_tree(files, out).written == ("c/wheel_step.c",)
+    assert not (out / "c" / "wheel_step.c").is_symlink()
+    assert (tmp_path / "elsewhere.c").read_text() == files["c/wheel_step.c"]
+
+
 def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("mine")
     with pytest.raises(OutputError, match="is a file"):

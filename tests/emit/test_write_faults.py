@@ -68,11 +68,14 @@ def stages(directory: Path) -> list[str]:
 
 
 def fresh(directory: Path, old: Files) -> Path:
-    """A folder with the old tree, one file of it changed by hand, one replaced by a link to nothing."""
+    """The old tree, a file changed by hand, two replaced by links: to nothing, and to a file elsewhere."""
     write_tree(old, directory)
     (directory / "demo" / "__init__.py").write_text("changed by hand")
     (directory / "demo" / "_support.py").unlink()
     (directory / "demo" / "_support.py").symlink_to("nowhere")
+    (directory.parent / "precious").write_text("mine")
+    (directory / "demo" / "py.typed").unlink()
+    (directory / "demo" / "py.typed").symlink_to(directory.parent / "precious")
     return directory
 
 
@@ -125,6 +128,8 @@ def test_every_call_fails_once(change, trees, tmp_path, monkeypatch):
         assert snapshot(place) == after
         assert stages(place) == []
     assert failed > total / 2
+    assert (tmp_path / "precious").read_text() == "mine"
+    assert (tmp_path / "precious").stat().st_nlink == 1
 
 
 @pytest.mark.parametrize("change", CHANGES)

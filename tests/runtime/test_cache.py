@@ -11,13 +11,14 @@ import tempfile
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 from runtime_factors import rotated
-from runtime_tools import child, entries, works
+from runtime_tools import R, child, entries, p, works
 
 import liegen
 from compiler_tools import needs_compiler
-from liegen import temporary
+from liegen import R3, SO3, function, temporary
 from liegen.errors import CacheWarning, ToolError
 from liegen.runtime import build, cache
 
@@ -203,6 +204,34 @@ def test_an_entry_of_another_key_is_not_loaded(folder, compilations):
     (mine,) = entries(folder)
     other = rotated.vary("R", name="turned")
     liegen.compile(other)
+    (theirs,) = set(entries(folder)) - {mine}
+    (folder / mine).unlink()
+    (folder / theirs).rename(folder / f"{key_of(mine)}-{theirs.partition('-')[2]}")
+    works(liegen.compile(rotated))
+    assert len(compilations) == 3
+
+
+def same_name():
+    """Another function of the name, so that its library has the same functions."""
+
+    @function
+    def rotated(R: SO3, p: R3):
+        return R @ (2 * p)
+
+    return rotated
+
+
+def test_another_formula_of_the_same_name(folder, compilations):
+    k = liegen.compile(same_name())
+    works(liegen.compile(rotated))
+    assert len(compilations) == 2
+    np.testing.assert_allclose(k(R, p), 2 * liegen.compile(rotated)(R, p), rtol=1e-12)
+
+
+def test_the_library_of_another_formula_is_not_loaded(folder, compilations):
+    works(liegen.compile(rotated))
+    (mine,) = entries(folder)
+    liegen.compile(same_name())
     (theirs,) = set(entries(folder)) - {mine}
     (folder / mine).unlink()
     (folder / theirs).rename(folder / f"{key_of(mine)}-{theirs.partition('-')[2]}")

@@ -119,9 +119,12 @@ def _request(manifest: Manifest, source: str | None) -> Request:
 
 
 def _cure(report: TreeReport, folder: Path, request: Request) -> str:
-    """The commands after which nothing differs: ``generate`` spares files that no manifest lists."""
+    """The commands after which nothing differs: ``generate`` spares files that no manifest lists.
+
+    An orphan that the manifest lists makes a change of the manifest too.
+    """
     steps = [shlex.join(["rm", *(str(folder / path) for path in report.unlisted)])] if report.unlisted else []
-    if report.missing or report.changed or set(report.orphans) - set(report.unlisted):
+    if report.missing or report.changed:
         steps.append(request.command(request.source, str(folder)))
     return " && ".join(steps)
 
