@@ -14,7 +14,7 @@ LAYERS = (
     "errors", "exits", "text", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty",
     "trace", "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton",
     "arguments", "define", "decorate",
-    "samples", "library", "modules", "user_code", "sources", "emit",
+    "samples", "library", "modules", "undisturbed", "user_code", "sources", "emit",
     "temporary", "subprocesses", "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain",
     "cli",
 )  # fmt: skip

@@ -5,18 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from typing import Any, NoReturn
+from typing import Any
 
-#: What ends a program without an exception.
-_EXITS = ("_exit", "abort")
+#: What ends a program without an exception, or puts another one in its place.
+_EXITS = ("_exit", "abort", "execv", "execve")
 
 
 @contextmanager
 def no_exit() -> Generator[None]:
-    """While a user's code runs, ``os._exit`` and ``os.abort`` raise SystemExit."""
-    ends: dict[str, Callable[..., Any]] = {name: getattr(os, name) for name in _EXITS}
-    for name in _EXITS:
-        setattr(os, name, _end)
+    """While a user's code runs, what ends this process raises SystemExit; child processes may end."""
+    ends: dict[str, Callable[..., Any]] = {name: getattr(os, name) for name in _EXITS if hasattr(os, name)}
+    process = os.getpid()
+    for name, function in ends.items():
+        setattr(os, name, _in_children(process, function))
     try:
         yield
     finally:
@@ -24,5 +25,10 @@ def no_exit() -> Generator[None]:
             setattr(os, name, function)
 
 
-def _end(*_: object) -> NoReturn:
-    raise SystemExit
+def _in_children(process: int, function: Callable[..., Any]) -> Callable[..., Any]:
+    def end(*arguments: Any) -> Any:
+        if os.getpid() == process:
+            raise SystemExit
+        return function(*arguments)
+
+    return end

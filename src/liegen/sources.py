@@ -162,14 +162,14 @@ def _spec(name: str) -> Any:
 
 def _tree(module: ModuleType) -> ast.Module:
     """The module's source, empty where there is none."""
-    file = getattr(module, "__file__", None)
+    file = vars(module).get("__file__")
     source = Path(file).read_bytes() if file and file.endswith(".py") else b""
     return ast.parse(source)
 
 
 def _imported_names(tree: ast.Module, module: ModuleType) -> set[str]:
     """Names that import statements bind at the module's top, those from a package's own modules left out."""
-    is_package = hasattr(module, "__path__")
+    is_package = "__path__" in vars(module)
     names: set[str] = set()
     for node in _top_level(tree.body):
         if isinstance(node, ast.Import):
@@ -184,7 +184,7 @@ def _imported_names(tree: ast.Module, module: ModuleType) -> set[str]:
 def _bound(alias: ast.alias, node: ast.ImportFrom, module: ModuleType) -> list[str]:
     if alias.name != "*":
         return [alias.asname or alias.name]
-    package = module.__name__ if hasattr(module, "__path__") else module.__name__.rpartition(".")[0]
+    package = module.__name__ if "__path__" in vars(module) else module.__name__.rpartition(".")[0]
     name = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
     other = sys.modules.get(name)
     return [key for key, value in vars(other).items() if vars(module).get(key) is value] if other else []

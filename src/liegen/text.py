@@ -11,6 +11,8 @@ import re
 import unicodedata
 from collections.abc import Iterable, Sequence
 
+from liegen.exits import no_exit
+
 #: Categories of Unicode that nobody sees: control, format, surrogate, private use, separators of lines.
 _UNSEEN = frozenset(("Cc", "Cf", "Cs", "Co", "Zl", "Zp"))
 #: What the C preprocessor may read as one character, such as ??/ for a backslash.
@@ -58,7 +60,8 @@ def printable(text: object, limit: int | None = None) -> str:
 def exception_text(error: BaseException) -> str:
     """``ValueError: why`` in one line; the type alone where there is no text."""
     try:
-        whole = str(error)
+        with no_exit():
+            whole = str(error)
     except BaseException:  # __str__ is the user's code too
         whole = "(its text cannot be shown: str() of it fails)"
     text = printable(" ".join(whole.split()), LONGEST)

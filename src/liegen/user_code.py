@@ -1,29 +1,17 @@
-"""Running a user's file: what the file changes of the process is put back, what it raises becomes one line.
-
-A file of factors is a program: it may change the folder, close the output, end the process. Nothing of that
-may reach what liegen does afterwards.
-"""
+"""Running a user's file: what it changes of the process is put back, what it raises becomes one line."""
 
 from __future__ import annotations
 
 import ast
-import os
-import sys
-import warnings
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import TextIO
-
-import numpy as np
 
 from liegen.errors import LiegenError, Site, SourceError
-from liegen.exits import no_exit
 from liegen.text import exception_text
 from liegen.trace import unknown_annotation
-
-_STREAMS = ("stdin", "stdout", "stderr")
+from liegen.undisturbed import undisturbed
 
 
 @contextmanager
@@ -33,31 +21,8 @@ def guarded(source: str, file: str) -> Generator[None]:
     ``file`` is the absolute path of the code, ``source`` what the user calls it. Raises SourceError, or the
     error of liegen itself that was raised, with the file and the line.
     """
-    with _undisturbed(), _clear_errors(source, file):
+    with _clear_errors(source, file), undisturbed():
         yield
-
-
-@contextmanager
-def _undisturbed() -> Generator[None]:
-    """The folder, the streams, the handling of warnings and of NumPy's errors are put back afterwards."""
-    folder = Path.cwd()
-    streams = {name: getattr(sys, name) for name in _STREAMS}
-    depth = sys.getrecursionlimit()
-    try:
-        with warnings.catch_warnings(), np.errstate(), no_exit():
-            yield
-    finally:
-        for number, (name, stream) in enumerate(streams.items()):
-            setattr(sys, name, _reopened(number, name, stream))
-        sys.setrecursionlimit(depth)
-        os.chdir(folder)
-
-
-def _reopened(number: int, name: str, stream: TextIO | None) -> TextIO | None:
-    """The stream, opened anew where the user's code closed it; the file descriptor is still open."""
-    if stream is None or not stream.closed:
-        return stream
-    return os.fdopen(number, "r" if name == "stdin" else "w", closefd=False)
 
 
 @contextmanager

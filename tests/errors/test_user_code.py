@@ -1,5 +1,8 @@
 """A file of factors is a program: what it does to the process is undone, what it raises becomes one line."""
 
+import json
+import os
+import signal
 import subprocess
 import sys
 
@@ -25,6 +28,11 @@ RAISES = {
         "class Sly(Exception):\n    def __str__(self):\n        raise SystemExit(0)\n\n\nraise Sly",
         ["factors.py:6", "Sly", "cannot be shown"],
     ),
+    "text of the error ends it at once": (
+        "import os\n\n\nclass Sly(Exception):\n    def __str__(self):\n        os._exit(0)\n\n\nraise Sly",
+        ["factors.py:9", "Sly", "cannot be shown"],
+    ),
+    "another program": ("import os\nos.execv('/bin/true', ['true'])", ["factors.py:2", "ends the program"]),
     "text of a million characters": ("raise ValueError('a' * 10**6)", ["ValueError: aaa", "more characters"]),
     "terminal escapes": (r"raise ValueError('\x1b[2Jgone\x07')", [r"\x1b[2Jgone\x07"]),
     "endless recursion": ("def f():\n    return f()\n\n\nf()", ["factors.py:2", "RecursionError"]),
@@ -43,6 +51,16 @@ HARMLESS = {
     "limits recursion": "import sys\nsys.setrecursionlimit(200)",
     "deletes itself": "import os\nos.remove(__file__)",
     "ends later": "import os\nleave = os._exit",
+    "a child that ends": "import os\nif os.fork() == 0:\n    os._exit(0)\nos.wait()",
+    "closes files": "import os\nos.close(1)\nos.close(2)",
+    "sends the output elsewhere": "import os\nos.dup2(os.open(os.devnull, os.O_WRONLY), 1)",
+    "forgets folders": "import sys\nsys.path.clear()",
+    "forgets modules": "import sys\nfor n in ('jinja2', 'json', 'pathlib'):\n    sys.modules.pop(n, None)",
+    "shadows builtins": "import builtins\nbuiltins.open = builtins.print = builtins.sorted = None",
+    "empties the environment": "import os\nos.environ.clear()",
+    "chooses a compiler": "import os\nos.environ['CC'] = 'nosuch'",
+    "hides what it writes": "import os\nos.umask(0o777)",
+    "has an odd attribute": "def __getattr__(name):\n    raise ValueError(name)",
 }
 
 
@@ -129,3 +147,48 @@ def test_a_package_that_ends_the_program(end, tmp_path, monkeypatch):
         assert done.exit_code == 2
         assert "leaving" in done.stderr
         assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "import os\nos.environ['CC'] = 'nosuch'\nos.environ.pop('PATH', None)",
+        "import os\nos.umask(0o777)",
+        "import builtins\nbuiltins.ascii = None",
+        "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)",
+        "import sys\nsys.settrace(lambda *a: None)\nsys.setprofile(lambda *a: None)",
+        "import sys\nsys.path.clear()",
+    ],
+)
+def test_the_process_is_as_it_was(head, tmp_path):
+    def state():
+        mask = os.umask(0)
+        os.umask(mask)
+        handler = signal.getsignal(signal.SIGINT)
+        searched = set(sys.path) - {str(tmp_path)}  # where its neighbours are
+        return dict(os.environ), mask, ascii, handler, sys.gettrace(), sys.getprofile(), searched
+
+    written(tmp_path, head.encode())
+    before = state()
+    done = CliRunner().invoke(app, ["list", str(tmp_path / "factors.py")])
+    assert done.exit_code == 0, done.output
+    assert state() == before
+
+
+def test_what_a_file_prints_is_no_result(tmp_path):
+    written(tmp_path, "print('hello')")
+    done = CliRunner().invoke(app, ["list", "--json", str(tmp_path / "factors.py")])
+    assert done.exit_code == 0
+    assert json.loads(done.stdout)
+    assert done.stderr == "hello\n"
+
+
+def test_the_current_folder_is_removed_by_the_file(tmp_path, monkeypatch):
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    written(tmp_path, "import os\nos.rmdir(os.getcwd())")
+    done = CliRunner().invoke(app, ["list", str(tmp_path / "factors.py")])
+    monkeypatch.chdir(tmp_path)
+    assert done.exit_code == 2
+    assert "the code of the factors removed the current folder" in done.stderr
+    assert done.stderr.count("\n") == 1
