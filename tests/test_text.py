@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from compiler_tools import needs_compiler
@@ -111,6 +111,10 @@ def test_nothing_unseen_is_left(text: str) -> None:
 
 
 @given(ANY)
+@example('"')
+@example('say "a"')
+@example('\\"')
+@example('""""')
 def test_python_reads_it_back(text: str) -> None:
     lines = text.split("\n")
     source = f"def f():\n    {docstring(lines, 4)}\n"

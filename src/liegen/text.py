@@ -86,10 +86,9 @@ def _in_c_comment(line: str) -> str:
 def docstring(lines: Sequence[str], indent: int) -> str:
     """A Python docstring; whatever the text holds, it does not end the literal."""
     safe = [one_line(line).rstrip().replace("\\", "\\\\").replace('"""', '\\"\\"\\"') for line in lines]
-    safe[-1] += " " if safe[-1].endswith('"') and len(safe) == 1 else ""
     pad = " " * indent
     body = "\n".join(f"{pad}{line}".rstrip() for line in safe).lstrip()
-    end = f"\n{pad}" if len(safe) > 1 else ""
+    end = f"\n{pad}" if len(safe) > 1 else " " if body.endswith('"') else ""
     return f'"""{body}{end}"""'
 
 

@@ -96,13 +96,11 @@ STATED = {
     "None": (lambda x: require(x[0] > 0, None), "require needs a text second, got a NoneType"),
     "a list": (lambda x: require(x[0] > 0, ["a"]), "require needs a text second, got a list"),
     "bytes": (lambda x: require(x[0] > 0, b"a"), "require needs a text second, got a bytes"),
-    "empty": (lambda x: require(x[0] > 0, " "), "require needs a text second, got an empty text"),
     "swapped": (lambda x: require("positive", x[0] > 0), "require needs a condition first, got text"),
     "no condition": (lambda x: require(x[0], "positive"), "require needs a condition first, got x[0] (R1)"),
     "1": (lambda x: require(1, "positive"), "require needs a condition first, got a int"),
     "no condition, None": (lambda x: require(None, "positive"), "needs a condition first, got None"),
     "singular, a number": (lambda x: singular(3), "singular needs a text first, got a int"),
-    "singular, empty": (lambda x: singular(""), "singular needs a text first, got an empty text"),
 }
 
 

@@ -120,10 +120,10 @@ def singular(message: str, *zeros: VectorLike) -> None:
 
 
 def _require_text(function: str, given: object, where: str) -> None:
-    """Raise DefinitionError unless a message has text."""
+    """Raise DefinitionError unless a message is a text."""
     place, _, usage = where.partition(", ")
-    if not isinstance(given, str) or not given.strip():
-        got = "an empty text" if isinstance(given, str) else f"a {type(given).__name__}"
+    if not isinstance(given, str):
+        got = f"a {type(given).__name__}"
         raise DefinitionError(f"{here()}: {function} needs a text {place}, got {got}; {usage}")
 
 
