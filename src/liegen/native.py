@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 
 from .errors import ToolError
-from .subprocesses import QUICK_LIMIT, Done, run, run_all, shortened, shown
+from .subprocesses import QUICK_LIMIT, Done, run, run_all, shortened, shown, time_limit
 
 COMPILERS = ("cc", "gcc", "clang")
 
@@ -68,7 +68,7 @@ def _zig() -> tuple[str, ...]:
 @cache
 def compiler_version(command: tuple[str, ...]) -> str:
     """What the compiler says of itself; empty where it says nothing. Raises ToolError where it hangs."""
-    return run([*command, "--version"], limit=QUICK_LIMIT).out
+    return run([*command, "--version"], limit=min(QUICK_LIMIT, time_limit())).out
 
 
 @cache

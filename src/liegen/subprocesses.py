@@ -133,7 +133,7 @@ def run_all(
                     running[place] = _started(command, files, cwd, env)
                 for place, job in list(running.items()):
                     if job.process.poll() is None:
-                        _check(job, seconds)
+                        _check(job, seconds, fixed=limit is not None)
                         continue
                     del running[place]
                     _end(job)  # what it left behind
@@ -170,11 +170,12 @@ def _started(
     return _Running(command, process, out, err, time.monotonic())
 
 
-def _check(job: _Running, seconds: float) -> None:
+def _check(job: _Running, seconds: float, *, fixed: bool) -> None:
     if time.monotonic() - job.start > seconds:
         raise TimeLimitError(
-            f"{shown(job.command)} did not end within {seconds:g} s and was stopped; "
-            f"set {LIMIT_VARIABLE} to give it more time, or CC to use another compiler"
+            f"{shown(job.command)} did not end within {seconds:g} s and was stopped; set "
+            + ("" if fixed else f"{LIMIT_VARIABLE} to give it more time, or ")
+            + "CC to use another compiler"
         )
     if max(os.fstat(file.fileno()).st_size for file in (job.out, job.err)) > MOST_OUTPUT:
         raise ToolError(

@@ -223,5 +223,9 @@ def test_a_compiler_that_does_not_say_its_version(tmp_path, monkeypatch):
     assert compiler_version((script(tmp_path / "silent", "exit 1"),)) == ""
     assert compiler_version((script(tmp_path / "odd", r"printf '\377'"),)) == "\ufffd"
     monkeypatch.setattr("liegen.native.QUICK_LIMIT", 0.2)
-    with pytest.raises(ToolError, match=r"--version did not end within 0\.2 s"):
+    told = r"--version did not end within 0\.2 s and was stopped; set CC to use another compiler"
+    with pytest.raises(ToolError, match=told):
         compiler_version((script(tmp_path / "hangs", "sleep 60"),))
+    monkeypatch.setenv(subprocesses.LIMIT_VARIABLE, "0.1")
+    with pytest.raises(ToolError, match=r"--version did not end within 0\.1 s"):
+        compiler_version((str(tmp_path / "hangs"), "again"))

@@ -152,6 +152,23 @@ def test_no_home(monkeypatch, folder):
     refused("Could not determine home directory")
 
 
+@pytest.mark.parametrize(("place", "reason"), [
+    ("n" * 300, "File name too long"), ("d/" * 3000, "File name too long"),
+    ("line\nfeed\x1b[31m/file/deeper", "Not a directory"),
+])  # fmt: skip
+def test_odd_places_are_told_in_one_short_line(place, reason, monkeypatch, tmp_path):
+    (tmp_path / "line\nfeed\x1b[31m").mkdir()
+    (tmp_path / "line\nfeed\x1b[31m" / "file").write_text("")
+    monkeypatch.setenv("LIEGEN_CACHE_DIR", f"{tmp_path}/{place}")
+    with pytest.warns(CacheWarning, match="compiled factors are not kept: cannot make the folder") as caught:
+        works(liegen.compile(rotated))
+    (message,) = (str(warning.message) for warning in caught)
+    assert message.endswith(reason)
+    assert len(message) < 500
+    assert "\n" not in message
+    assert "\x1b" not in message
+
+
 def test_the_folder_follows_the_environment(monkeypatch, tmp_path):
     monkeypatch.setenv("LIEGEN_CACHE_DIR", "~/kept")
     monkeypatch.setenv("HOME", str(tmp_path))

@@ -12,7 +12,7 @@ from pathlib import Path
 from liegen.emit.loops import symbol
 from liegen.errors import CacheWarning, ToolError, warned
 from liegen.native import compile_shared, compiler_version, processor, required_compiler
-from liegen.subprocesses import TimeLimitError, shown
+from liegen.subprocesses import TimeLimitError, shortened, shown
 from liegen.temporary import temporary_folder
 
 from .cache import SUFFIX, Refused, cache_folder, find, install, opened, private_folder
@@ -44,14 +44,15 @@ def load(source: Source, part: str) -> ctypes.CDLL:
     try:
         return _loaded(source, part, opened(cache_folder()), key)
     except Refused as reason:
-        refused = str(reason)
+        refused = shortened(str(reason))
     except OSError as error:  # for example a file system without execution
-        refused = f"cannot load from it: {error}"
+        refused = shortened(f"cannot load from it: {error}")
     try:
         library = _loaded(source, part, private_folder(), key)
     except (OSError, Refused) as error:
         raise ToolError(
-            f"{source.name}: what {shown(command)} made can neither be kept nor loaded: {refused}; {error}. "
+            f"{source.name}: what {shown(command)} made can neither be kept nor loaded: {refused}; "
+            f"{shortened(str(error))}. "
             "Set CC to a compiler for this machine, TMPDIR to a folder with room"
         ) from error
     warned(f"compiled factors are not kept: {refused}", CacheWarning)

@@ -18,6 +18,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+from liegen.subprocesses import shortened
 from liegen.temporary import OLD, temporary_folder
 
 #: The part of the cache that this layout of entries has for itself.
@@ -63,7 +64,7 @@ def opened(folder: Path) -> Path:
         status = folder.lstat()
         parents = [(parent, parent.stat()) for parent in folder.resolve().parents]
     except OSError as error:
-        raise Refused(f"cannot make the folder {folder}: {error.strerror}") from error
+        raise Refused(f"cannot make the folder {shortened(str(folder), 200)}: {error.strerror}") from error
     if not stat.S_ISDIR(status.st_mode):
         raise Refused(f"{folder} is a link or a file, not a folder; remove it")
     if os.name == "posix":
