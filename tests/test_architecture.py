@@ -11,8 +11,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "exits", "text", "algebra", "coefficients", "manifolds", "charts", "layouts", "uncertainty",
-    "trace", "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton",
+    "errors", "exits", "text", "advice", "algebra", "coefficients", "manifolds", "charts", "layouts",
+    "uncertainty", "trace", "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton",
     "arguments", "define", "decorate",
     "samples", "library", "modules", "undisturbed", "user_code", "sources", "emit",
     "temporary", "subprocesses", "native", "runtime", "verify", "accuracy", "foreign", "bench", "explain",

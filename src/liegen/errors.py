@@ -28,6 +28,10 @@ class DefinitionError(LiegenError):
     """A factor is written in a way that liegen cannot accept."""
 
 
+class NoAttributeError(DefinitionError, AttributeError):
+    """A value has no such attribute; the message says what to write."""
+
+
 class DomainError(LiegenError):
     """A residual or Jacobian has no finite value anywhere that samples reach."""
 

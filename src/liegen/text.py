@@ -58,7 +58,15 @@ def printable(text: object, limit: int | None = None) -> str:
 
 
 def exception_text(error: BaseException) -> str:
-    """``ValueError: why`` in one line; the type alone where there is no text."""
+    """``ValueError: why`` in one line; the type alone where there is no text.
+
+    With what it was raised from, if any: ``ValueError: why (caused by KeyError: 'a')``.
+    """
+    cause = error.__cause__
+    return _said(error) if cause is None else f"{_said(error)} (caused by {_said(cause)})"
+
+
+def _said(error: BaseException) -> str:
     try:
         with no_exit():
             whole = str(error)

@@ -8,7 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
+from liegen.advice import for_exception
 from liegen.errors import LiegenError, Site, SourceError
+from liegen.manifolds.node import site_at, user_steps
 from liegen.text import exception_text
 from liegen.trace import unknown_annotation
 from liegen.undisturbed import undisturbed
@@ -44,7 +46,14 @@ def _clear_errors(source: str, file: str) -> Generator[None]:
         site = _site(error.__traceback__, file)
         if isinstance(error, NameError) and site is not None:
             _refuse_annotation(error, site, file)
-        raise SourceError(f"{site or source}: {in_one_line(error)}") from None
+        steps = user_steps(error)
+        cure = for_exception(error, steps[-1] if steps else None)
+        text = f"{in_one_line(error)}; write {cure}" if cure else in_one_line(error)
+        raised = steps[-1] if steps else None
+        inner = raised.tb_frame.f_code.co_filename if raised else file
+        helper = raised and inner != file and Path(inner).is_relative_to(Path(file).parent)
+        where = f" (raised at {site_at(raised)})" if raised and helper else ""
+        raise SourceError(f"{site or source}: {text}{where}") from None
 
 
 def in_one_line(error: BaseException) -> str:

@@ -23,7 +23,6 @@ def broken(signature, body, decorator="@factor"):
 BODY, HERE = f"factors.py:{DEF + 1}", f"factors.py:{DEF}"
 DECORATOR = f"factors.py:{DEF - 1}"
 NO_NUMBER = "while a factor is traced it has no number"
-LANGUAGE = "liegen.where, minimum, maximum, abs and liegen's own functions"
 
 #: Source, then what the message must say: place, names, cure.
 MISTAKES = {
@@ -104,39 +103,39 @@ MISTAKES = {
     "empty slice": (broken("x: R3", "return x[5:]"), [BODY, "broken", "x (R3)", "0 to 2"]),
     "ufunc of NumPy": (
         broken("x: R3", "return np.sin(x)"),
-        [BODY, "broken", "np.sin", "x (R3)", "liegen.sin"],
+        [BODY, "broken", "np.sin", "x (R3)", "write sin(x) (from liegen import sin)"],
     ),
     "function of NumPy": (
         broken("x: R3", "return R1(np.linalg.norm(x))"),
-        [BODY, "broken", "x (R3)", "NumPy array", NO_NUMBER, LANGUAGE],
+        [BODY, "broken", "x (R3)", "NumPy array", NO_NUMBER, "write norm(x)"],
     ),
     "function of math": (
         broken("x: R1", "return R1(math.sin(x))"),
-        [BODY, "broken", "x (R1)", "float", NO_NUMBER, LANGUAGE],
+        [BODY, "broken", "x (R1)", "float", NO_NUMBER, "write sin(x)"],
     ),
     "float": (
         broken("x: R1", "return R1(float(x))"),
-        [BODY, "broken", "x (R1)", "float()", NO_NUMBER, LANGUAGE],
+        [BODY, "broken", "x (R1)", "float()", NO_NUMBER, "write x"],
     ),
     "if": (
         broken("x: R1", "return x if x > 0 else -x"),
-        [BODY, "broken", "branch on 0 < x", NO_NUMBER, LANGUAGE],
+        [BODY, "broken", "branch on 0 < x", NO_NUMBER, "write where(x > 0, x, -x)"],
     ),
     "and": (
         broken("x: R1", "return liegen.where(x > 0 and x < 1, x, -x)"),
-        [BODY, "broken", "branch on 0 < x", NO_NUMBER, LANGUAGE],
+        [BODY, "broken", "branch on 0 < x", NO_NUMBER, "write (x > 0) & (x < 1)"],
     ),
     "comparison with ==": (
         broken("x: R1", "return x if x == 0 else -x"),
-        [BODY, "broken", "compare x (R1) with ==", NO_NUMBER, LANGUAGE],
+        [BODY, "broken", "compare x (R1) with ==", NO_NUMBER, "write abs(x) < 1e-9"],
     ),
     "operator that a group lacks": (
         broken("x: SE3, y: SE3", "return (x * y).log()"),
-        [BODY, "broken", "'SE3' and 'SE3'", "use their operations", "compose"],
+        [BODY, "broken", "'SE3' and 'SE3'", "write x @ y"],
     ),
     "method that does not exist": (
         broken("x: R3", "return x.foo"),
-        [BODY, "broken", "'foo'", "use their operations"],
+        [BODY, "broken", "x (R3)", "'foo'", "entries [k]", "norm", "dot"],
     ),
     "assignment": (broken("x: R3", "x[0] = 1"), [BODY, "broken", "item assignment"]),
     "return is missing": (

@@ -59,6 +59,7 @@ class App(click.Group):
             raise click.exceptions.Exit(0) from None  # the reader, head for example, has seen enough
         except LiegenError as error:
             if debug:
+                _show_causes(error)
                 raise
             raise Refused(printable(error)) from None
         except KeyboardInterrupt:
@@ -70,12 +71,21 @@ class App(click.Group):
                 _close_output()
                 raise Unprinted(f"{_UNPRINTED}: {error.strerror}") from None
             if debug:
+                _show_causes(error)
                 raise
             text = " ".join(f"{type(error).__name__}: {error}".split())
             again = f"liegen --debug {ctx.invoked_subcommand} ..."
             raise Internal(
                 f"liegen itself failed: {printable(text)}\nSee the traceback with: {again}"
             ) from None
+
+
+def _show_causes(error: BaseException) -> None:
+    """Let the traceback show the user's own errors, which messages replace."""
+    inner: BaseException | None = error
+    while inner is not None:
+        inner.__suppress_context__ = False
+        inner = inner.__cause__ or inner.__context__
 
 
 def _output_refuses(error: OSError) -> bool:

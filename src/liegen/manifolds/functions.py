@@ -9,9 +9,10 @@ from liegen.algebra import atan2 as scalar_atan2
 from liegen.algebra.linear import cross as scalar_cross
 from liegen.algebra.linear import dot as scalar_dot
 from liegen.algebra.linear import negate, skew
+from liegen.errors import DefinitionError
 
 from .condition import Condition
-from .node import Operation, apply
+from .node import Operation, Value, apply, called, here
 from .rn_form import direction, length
 from .vector import R1, R3, Vector, VectorLike, as_vector, binary, unary, vector_class
 
@@ -152,6 +153,11 @@ def where(condition: Condition, a: float, b: V) -> V: ...
 def where(condition: Condition, a: VectorLike, b: VectorLike) -> Vector: ...
 def where(condition: Condition, a: Any, b: Any) -> Any:
     """``a`` where the condition holds, else ``b``. Both are computed, so both must be finite."""
+    if not isinstance(condition, Condition):  # pyright: ignore[reportUnnecessaryIsInstance]
+        given = called(condition) if isinstance(condition, Value) else f"a {type(condition).__name__}"
+        cure = "(x > 0) & (y > 0) for two of them" if isinstance(condition, list | tuple) else "x > 0"
+        said = f"where needs a condition first, got {given}; write one, such as {cure}"
+        raise DefinitionError(f"{here()}: {said}")
     x, y = as_vector(a, where="where"), as_vector(b, where="where")
     n = max(len(x), len(y))
     x, y = (as_vector(v * ([1.0] * n) if len(v) == 1 and n > 1 else v, n, "where") for v in (x, y))

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.advice import for_operator_here
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Matrix
 from liegen.errors import DefinitionError
 
 from .form import GroupForm, ManifoldForm
 from .given import real_numbers
-from .node import Operation, V, Value, apply, called, here, shown_storage
+from .node import Operation, V, Value, apply, called, here, shown_storage, user_frame
 from .rn_form import RForm
 
 if TYPE_CHECKING:
@@ -44,9 +45,10 @@ def as_element(operation: str, x: V, y: V | object) -> V:
     """
     if isinstance(y, Value):
         if x.form != y.form:
+            write = for_operator_here(type(x), user_frame(), type(y)) if operation == "compose" else ""
             raise DefinitionError(
                 f"{here()}: {operation} needs two elements of one manifold, got {called(x)} and {called(y)}; "
-                f"give it two of {x.form.name}"
+                f"give it two of {x.form.name}" + (f": write {write}" if write else "")
             )
         return y  # pyright: ignore[reportReturnType]
     form, what = x.form, f"{here()}: {operation} of {called(x)} needs another {x.form.name}"

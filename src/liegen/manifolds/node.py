@@ -6,18 +6,21 @@ a factor that is being traced (then it adds a node). ``apply`` is the only place
 
 from __future__ import annotations
 
+import os
 import sys
+import sysconfig
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import FrameType
-from typing import Any, ClassVar, NoReturn, Self, TypeVar
+from types import FrameType, TracebackType
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar
 
 import numpy as np
 
+from liegen.advice import for_missing, for_number
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Vector as Coordinates
-from liegen.errors import DefinitionError, Site
+from liegen.errors import DefinitionError, NoAttributeError, Site
 
 from .form import Compute, ManifoldForm, Rule
 from .given import real_numbers
@@ -25,6 +28,8 @@ from .given import real_numbers
 _PACKAGE = str(Path(__file__).resolve().parent.parent)
 _LIBRARY = str(Path(_PACKAGE) / "library")
 _NUMPY = str(Path(np.__file__).parent)
+_OTHERS = tuple(str(Path("-packages") / name) + os.sep for name in ("sympy", "casadi", "mpmath", "scipy"))
+_PYTHON = sysconfig.get_path("stdlib")
 V = TypeVar("V", bound="Value")
 
 
@@ -96,6 +101,15 @@ class Value:
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"{type(self).__name__} values cannot be changed; make a new one")
 
+    if not TYPE_CHECKING:  # type checkers know the attributes
+
+        def __getattr__(self, name: str) -> NoReturn:
+            """Raise NoAttributeError, which says what to write."""
+            if name.startswith("_"):
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            cure = for_missing(type(self), name, formula(self), user_frame())
+            raise NoAttributeError(f"{here()}: {called(self)} has no attribute {name!r}; {cure}")
+
     @property
     def traced(self) -> bool:
         """Whether this value stands for a node of a factor's graph."""
@@ -124,15 +138,13 @@ class Value:
             result = reflected_operator(self, inputs[0]) if reflected_operator else NotImplemented
             if result is not NotImplemented:
                 return result
-        raise DefinitionError(
-            f"{here()}: np.{ufunc.__name__} does not take {called(self)}; "
-            "write the formula with liegen's functions (liegen.sin, norm, dot, stack, ...) and operators"
-        )
+        cure = for_number(type(self), formula(self), "read", user_frame(), ufunc.__name__)
+        raise DefinitionError(f"{here()}: np.{ufunc.__name__} does not take {called(self)}; write {cure}")
 
     def __bool__(self) -> bool:
         if self._node is None and len(self._coords) == 1:
             return bool(self._coords[0])
-        refuse(self, "branch on {} (if, and, or and not do)")
+        refuse(self, f"branch on {formula(self, 'a condition')} (if, and, or and not do)", "branch")
 
     def __float__(self) -> float:
         if self._node is None and len(self._coords) == 1:
@@ -141,7 +153,7 @@ class Value:
 
     def __eq__(self, other: object) -> bool:
         if self._node is not None or (isinstance(other, Value) and other.traced):
-            refuse(self, "compare {} with ==")
+            refuse(self, "compare {} with ==", "compare")
         same = type(self) is type(other) and isinstance(other, Value)
         return same and bool(np.array_equal(np.asarray(self), np.asarray(other)))
 
@@ -172,24 +184,38 @@ def shown_storage(names: Sequence[str]) -> str:
     return ", ".join(names if len(names) <= 12 else [*names[:10], "...", names[-1]])
 
 
-def refuse(value: Value, what: str) -> NoReturn:
-    """Raise the error for Python code that needs the number of a traced value."""
+def refuse(value: Value, what: str, doing: str = "read") -> NoReturn:
+    """Raise the error for Python code that needs the number of a traced value.
+
+    ``doing`` is "branch" or "compare" where Python asks for the truth of a condition or of ``==``.
+    """
+    cure = for_number(type(value), formula(value), doing, user_frame())
     raise DefinitionError(
-        f"{here()}: cannot {what.format(called(value))}: while a factor is traced it has no number. "
-        "Use liegen.where, minimum, maximum, abs and liegen's own functions instead of if, math and numpy"
+        f"{here()}: cannot {what.format(called(value))}: while a factor is traced it has no number; "
+        f"write {cure}"
     )
 
 
 def called(value: Value) -> str:
     """How a message speaks of a value: ``x (SE3)`` where its formula is short, else its manifold."""
+    shown = formula(value, "")
+    return f"{shown} ({value.form.name})" if shown else value.form.name
+
+
+def formula(value: Value, otherwise: str = "x") -> str:
+    """The formula of a value where it is short."""
     node = value._node  # pyright: ignore[reportPrivateUsage]
     if node is None or any(n.operands for n in node.operands):
-        return value.form.name
-    return f"{node.operation.show.format(*(n.operation.show for n in node.operands))} ({value.form.name})"
+        return otherwise
+    return node.operation.show.format(*(n.operation.show for n in node.operands))
 
 
 def _machinery(file: str) -> bool:
-    """Whether a file is liegen's or NumPy's own, so that no user looks there for a mistake."""
+    """Whether a file is liegen's, Python's or of a library such as NumPy: not where a user's mistake is."""
+    if any(folder in file for folder in _OTHERS):
+        return True
+    if file.startswith(_PYTHON):
+        return "-packages" not in file
     return file.startswith((_PACKAGE, _NUMPY)) and not file.startswith(_LIBRARY)
 
 
@@ -199,11 +225,17 @@ def _generated(frame: FrameType) -> bool:
     return frame.f_code.co_filename == "<string>" and module.startswith("liegen.")
 
 
-def here() -> Site:
-    """The nearest line outside liegen's machinery: the user's, or the library's."""
+def user_frame() -> FrameType:
+    """The nearest frame outside liegen's machinery: the user's, or the library's."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]
     while frame.f_back is not None and (_machinery(frame.f_code.co_filename) or _generated(frame)):
         frame = frame.f_back
+    return frame
+
+
+def here() -> Site:
+    """The nearest line outside liegen's machinery: the user's, or the library's."""
+    frame = user_frame()
     return Site(Path(frame.f_code.co_filename).name, frame.f_lineno)
 
 
@@ -214,13 +246,24 @@ def raised_at(error: BaseException) -> Site:
 
 def raised_in_user_code(error: BaseException) -> Site | None:
     """The last line outside liegen's machinery that an exception came through, if any."""
-    site, traceback = None, error.__traceback__
-    while traceback is not None:
-        file = traceback.tb_frame.f_code.co_filename
-        if not _machinery(file) and not _generated(traceback.tb_frame):
-            site = Site(Path(file).name, traceback.tb_lineno)
-        traceback = traceback.tb_next
-    return site
+    steps = user_steps(error)
+    return site_at(steps[-1]) if steps else None
+
+
+def user_steps(error: BaseException) -> list[TracebackType]:
+    """The steps of an exception's way outside of liegen's machinery, the innermost last."""
+    steps: list[TracebackType] = []
+    step = error.__traceback__
+    while step is not None:
+        if not _machinery(step.tb_frame.f_code.co_filename) and not _generated(step.tb_frame):
+            steps.append(step)
+        step = step.tb_next
+    return steps
+
+
+def site_at(step: TracebackType) -> Site:
+    """The line of a step."""
+    return Site(Path(step.tb_frame.f_code.co_filename).name, step.tb_lineno)
 
 
 def apply(operation: Operation, result: type[V], *operands: Value) -> V:

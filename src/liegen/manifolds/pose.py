@@ -34,6 +34,7 @@ class Pose(Group, Generic[Q, P, B]):
             raise DefinitionError(
                 f"{here()}: {cls.__name__}(rotation, translation) needs a {cls.rotation_class.__name__}, "
                 f"got {called(value) if isinstance(value, Value) else type(value).__name__}"
+                + ("; write the rotation first" if isinstance(translation, cls.rotation_class) else "")
             )
         t = as_vector(translation, form.rotation.space, f"{cls.__name__}(rotation, translation)")
 

@@ -7,11 +7,12 @@ from typing import Any, ClassVar, Generic, NoReturn, Self, TypeVar, overload
 
 from numpy.typing import NDArray
 
-from liegen.algebra.linear import matvec, negated, transpose
+from liegen.algebra.linear import eye, matvec, negated, transpose
+from liegen.errors import DefinitionError
 
 from .form import Blocks, Coords, RotationForm
 from .group import Group, composes, tangent_class
-from .node import Operation, apply, refuse
+from .node import Operation, apply, called, here, refuse
 from .vector import Vector, VectorLike, as_vector
 
 P = TypeVar("P", bound=Vector)
@@ -59,7 +60,7 @@ class Rotation(Group, Generic[P]):
         """R as an array of shape (..., n, n).
 
         While a factor is traced it is what matrices are for: ``R.matrix() @ v``, ``v @ R.matrix()``, ``.T``,
-        and products of such.
+        products of such, and the entries ``[i, j]``, rows ``[i]`` and columns ``[:, j]``.
         """
         traced: Any = RotationMatrix(self)
         return traced if self.traced else super().matrix()
@@ -94,6 +95,26 @@ class RotationMatrix:
     def transpose(self) -> RotationMatrix:
         """The same as ``T``."""
         return self.T
+
+    def __getitem__(self, index: Any) -> Any:
+        """An entry ``[i, j]``, a row ``[i]`` or ``[i, :]``, a column ``[:, j]``.
+
+        Raises DefinitionError for any other index: larger blocks are no vectors.
+        """
+        given: tuple[Any, ...] = index if index.__class__ is tuple else (index,)
+        row, column = given if len(given) == 2 else (given[0] if len(given) == 1 else None, slice(None))
+        n, whole = self.rotation.form.space, slice(None)
+        picked = [k for k in (row, column) if k != whole]
+        if not picked or not all(type(k) is int and -n <= k < n for k in picked):
+            raise DefinitionError(
+                f"{here()}: the matrix of {called(self.rotation)} has the entries [i, j] with i, j from 0 to "
+                f"{n - 1}, the rows [i] and the columns [:, j]; write a block as several of them"
+            )
+        axes: Any = eye(n)
+        if row == whole:
+            return self @ [float(x) for x in axes[column]]
+        entries = self.T @ [float(x) for x in axes[row]]
+        return entries if column == whole else entries[column]
 
     def __matmul__(self, other: RotationMatrix | VectorLike) -> Any:
         if isinstance(other, RotationMatrix):

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cache
-from typing import Any, ClassVar, Self, SupportsIndex, TypeVar, overload
+from typing import Any, ClassVar, NoReturn, Self, SupportsIndex, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from liegen.advice import for_no_vector, for_operator_here
 from liegen.algebra import call
 from liegen.errors import DefinitionError
 
 from .condition import Condition
 from .given import dimension, real_numbers
 from .group import Group
-from .node import Operation, Value, apply, called, here
+from .node import Operation, Value, apply, called, formula, here, user_frame
 from .rn_form import RForm, direction_or_zero, length
 from .vector_operations import (
     ARITHMETIC,
@@ -25,6 +26,8 @@ from .vector_operations import (
     constant_product,
     elementwise,
     join,
+    positions,
+    spoken_as,
     take,
 )
 
@@ -88,15 +91,17 @@ class Vector(Group):
 
     def __pow__(self, exponent: int) -> Self:
         if not isinstance(exponent, int) or exponent < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise DefinitionError(
-                f"{here()}: ** takes a whole number that is not negative; "
-                "use sqrt, exp and log for other powers"
-            )
+            cure = for_operator_here(Vector, user_frame()) or "exp(y * log(x)) for x ** y"
+            raise DefinitionError(f"{here()}: ** takes a whole number that is not negative; write {cure}")
         if exponent == 0:
             return self * 0 + 1
         half = self ** (exponent // 2) if exponent > 1 else None
         square = self if half is None else half * half
         return square * self if half is not None and exponent % 2 else square
+
+    def __rpow__(self, base: float) -> NoReturn:
+        cure = for_operator_here(Vector, user_frame()) or "exp(x * log(base)) for base ** x"
+        raise DefinitionError(f"{here()}: ** takes a whole number that is not negative; write {cure}")
 
     def __rmatmul__(self, matrix: NDArray[Any]) -> Vector:
         """``M @ v`` with a constant matrix."""
@@ -119,19 +124,9 @@ class Vector(Group):
     @overload
     def __getitem__(self, index: slice) -> Vector: ...
     def __getitem__(self, index: SupportsIndex | slice) -> Vector:
-        try:
-            positions = range(self.form.dim)[index]
-        except IndexError:
-            raise DefinitionError(
-                f"{here()}: {called(self)} has the entries 0 to {len(self) - 1}, there is no [{index}]"
-            ) from None
-        picked = list(positions) if isinstance(positions, range) else [positions]
-        if not picked:
-            raise DefinitionError(
-                f"{here()}: an empty slice: {called(self)} has the entries 0 to {len(self) - 1}"
-            )
+        picked = positions(self, len(self), index)
         cls = vector_class(len(picked))
-        return apply(take(cls, len(self), picked, single=isinstance(positions, int)), cls, self)
+        return apply(take(cls, len(self), picked, single=not isinstance(index, slice)), cls, self)
 
     def __iter__(self) -> Iterator[R1]:
         return (self[k] for k in range(len(self)))
@@ -166,6 +161,9 @@ class R(Vector):
             usage = "R(12), or R3(1, 2, 3) for a vector of numbers"
             sized: Any = vector_class(dimension(size, f"{here()}: R", usage))
             return sized
+        if not entries:
+            cure = f"{cls.__name__}.identity() is that of zeros"
+            raise DefinitionError(f"{here()}: {cls.__name__} needs {cls.form.dim} entries, got none; {cure}")
         v = stack(*entries)
         if len(v) != cls.form.dim:
             raise DefinitionError(f"{here()}: {cls.__name__} needs {cls.form.dim} entries, got {len(v)}")
@@ -247,9 +245,14 @@ def as_vector(v: Any, dim: int | None = None, where: str = "this operation") -> 
 
     Raises DefinitionError for anything that is no vector, and for a dimension other than ``dim``.
     """
+    if isinstance(v, list | tuple) and any(isinstance(x, Value) for x in v):  # pyright: ignore[reportUnknownVariableType]
+        v = stack(*v)  # pyright: ignore[reportUnknownArgumentType]
     if not isinstance(v, Vector):
         if isinstance(v, Value):
-            raise DefinitionError(f"{here()}: {where} needs a vector, got {called(v)}")
+            cure = for_no_vector(type(v), formula(v), user_frame())
+            raise DefinitionError(
+                f"{here()}: {where} needs a vector, got {called(v)}" + (f"; write {cure}" if cure else "")
+            )
         numbers = np.atleast_1d(real_numbers(v, f"{here()}: {where} needs a vector or numbers"))
         if 0 in numbers.shape[-1:]:
             raise DefinitionError(f"{here()}: {where} needs a vector, got an array of shape {numbers.shape}")
@@ -299,11 +302,20 @@ def binary(name: str, show: str, a: Any, b: Any, f: Elementwise, partials: Parti
 
 
 def _compare(name: str, show: str, a: Any, b: Any) -> Condition:
-    vectors = as_vector(a, 1, "a comparison"), as_vector(b, 1, "a comparison")
+    vectors = as_vector(a, where="a comparison"), as_vector(b, where="a comparison")
+    if any(len(v) != 1 for v in vectors):
+        entries, lengths = (" < ".join(spoken_as(v, t) for v in vectors) for t in ("{}[0]", "norm({})"))
+        raise DefinitionError(
+            f"{here()}: a comparison is of two scalars, got {' and '.join(map(called, vectors))}; "
+            f"write {entries} for entries, {lengths} for lengths"
+        )
     return apply(comparison(Condition, name, show), Condition, *vectors)
 
 
 def _constant_product(matrix: Any, v: Vector) -> Vector:
+    if isinstance(matrix, Value):
+        cure = for_operator_here(type(matrix), user_frame()) or "dot(x, y) for x @ y"
+        raise DefinitionError(f"{here()}: @ does not take {called(matrix)} and {called(v)}; write {cure}")
     numbers = np.asarray(matrix, dtype=np.float64)
     if numbers.ndim != 2 or numbers.shape[1] != len(v):
         raise DefinitionError(

@@ -8,9 +8,11 @@ from typing import Any
 from liegen.algebra import Scalar, call
 from liegen.algebra.linear import Chain, Matrix, column, diagonal, eye, matvec
 from liegen.algebra.linear import Vector as Coordinates
+from liegen.errors import DefinitionError
 
 from .form import Blocks
-from .node import Operation, Value
+from .given import spoken
+from .node import Operation, Value, called, formula, here
 
 #: An entry of the result from the operands' entries.
 Elementwise = Callable[[Any], Scalar] | Callable[[Any, Any], Scalar]
@@ -60,6 +62,34 @@ def comparison(cls: type[Value], name: str, show: str) -> Operation:
         return (call(name, x[0], y[0]),)
 
     return Operation(name, cls, value, None, show)
+
+
+def positions(x: Value, n: int, index: Any) -> Sequence[int]:
+    """The entries that an index means. Raises DefinitionError for what is none, and for no entry."""
+    has = f"{called(x)} has the entries 0 to {n - 1}"
+    entries: Any = range(n)
+    try:
+        found: Any = entries[index]
+    except TypeError:
+        given: Sequence[Any] = index if index.__class__ in (list, tuple) else ()
+        several = given and all(type(k) is int for k in given)
+        cure = f"; write stack({', '.join(f'{formula(x)}[{k}]' for k in given)})" if several else ""
+        raise DefinitionError(
+            f"{here()}: {has}; an index is a whole number or a slice, got {spoken(index)}{cure}"
+        ) from None
+    except IndexError:
+        raise DefinitionError(f"{here()}: {has}, there is no [{index}]") from None
+    picked: Sequence[int] = found if index.__class__ is slice else [found]
+    if not picked:
+        raise DefinitionError(f"{here()}: an empty slice: {has}")
+    return picked
+
+
+def spoken_as(v: Value, of_vector: str) -> str:
+    """A scalar as it is, ``of_vector`` of a longer vector."""
+    if v.form.size > 1:
+        return of_vector.format(formula(v, "p"))
+    return formula(v) if v.traced else f"{float(v):g}"
 
 
 def take(cls: type[Value], n: int, positions: Sequence[int], *, single: bool) -> Operation:

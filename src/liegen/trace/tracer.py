@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MethodType
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from liegen.advice import for_class
 from liegen.charts import Preset
-from liegen.errors import DefinitionError, LiegenError, Site
+from liegen.errors import DefinitionError, Site
 from liegen.exits import no_exit
 from liegen.manifolds import Condition, Manifold, Value, Vector
 from liegen.manifolds.given import spoken
-from liegen.manifolds.node import Leaf, Node, called, here, node_of, parameter, raised_at
+from liegen.manifolds.node import Leaf, Node, called, here, node_of, parameter
 from liegen.manifolds.vector import VectorLike, as_vector
-from liegen.text import exception_text
 
 from .charting import ChartLike, common_chart, in_charts
 from .defaults import default_of
@@ -29,6 +29,7 @@ from .frame_check import check_frames
 from .frame_declared import Declared, declared
 from .frame_names import Frames
 from .graph import Call, Domain, Graph, Parameter, Singular, topological
+from .telling import told
 
 
 @dataclass(frozen=True)
@@ -199,7 +200,9 @@ def unknown_annotation(site: Site, factor: str, argument: str, annotation: str) 
     """The error for a name that does not exist."""
     home = "typing" if annotation == "Annotated" else "liegen"
     known = annotation in (*_KNOWN, "Annotated", "frames")
-    cure = f"import it: from {home} import {annotation}" if known else f"use {_MANIFOLDS}"
+    meant = for_class(annotation)
+    near = f"write {meant}, or use" if meant else "use"
+    cure = f"import it: from {home} import {annotation}" if known else f"{near} {_MANIFOLDS}"
     return DefinitionError(
         f"{site}: {factor}: argument {argument!r} has the unknown annotation {annotation!r}; {cure}"
     )
@@ -211,7 +214,9 @@ def _manifold(annotation: Any, what: str) -> type[Manifold]:
     kind: Any = annotation if isinstance(annotation, type) else type(None)
     if not (issubclass(kind, Manifold) and hasattr(kind, "form")):
         shown = getattr(annotation, "__name__", str(annotation))
-        raise DefinitionError(f"{what} is annotated with {shown}, which is no manifold; use {_MANIFOLDS}")
+        meant = for_class(shown)
+        near = f"write {meant}, or use" if meant else "use"
+        raise DefinitionError(f"{what} is annotated with {shown}, which is no manifold; {near} {_MANIFOLDS}")
     return kind
 
 
@@ -252,12 +257,10 @@ def trace(
                     *(values[s.name] for s in declared if s.positional),
                     **{s.name: values[s.name] for s in declared if not s.positional},
                 )
-        except LiegenError as error:
-            raise type(error)(_with_site(name, error)) from None
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # a user's function may raise anything
-            raise DefinitionError(f"{raised_at(error)}: {name}: {_explained(error)}") from None
+            raise told(name, error) from None
     named = _outputs(result, f"{site}: {name}", factor=factor)
     graph = Graph(
         name, doc, site, parameters, named, tuple(record.domain), tuple(record.calls),
@@ -267,22 +270,6 @@ def trace(
     charted = in_charts(graph, chart)
     charts = Charts({p.name: p.chart for p in charted.parameters}, charted.chart)
     return replace(charted, frames=check_frames(graph, charts)) if frames else charted
-
-
-def _with_site(name: str, error: LiegenError) -> str:
-    """The user's line, the factor, the message."""
-    text = str(error)
-    stated = re.match(r"[^:]+:\d+: ", text)
-    site = stated[0] if stated else f"{raised_at(error)}: "
-    return f"{site}{name}: {text.removeprefix(site)}"
-
-
-def _explained(error: BaseException) -> str:
-    """What Python said, and what a residual may do instead."""
-    if not isinstance(error, Exception):
-        return f"{exception_text(error)}; a formula returns a value, it does not end the program"
-    cure = "values are elements of manifolds: use their operations (compose, local, @, [k], ...)"
-    return f"{exception_text(error)}; {cure}"
 
 
 @contextmanager
@@ -312,8 +299,16 @@ def _outputs(result: Any, what: str, *, factor: bool) -> tuple[tuple[str, Node],
     return tuple((name, node_of(value)) for name, value in result.values.items())
 
 
+_KINDS: Mapping[type, str] = {
+    type(None): "nothing (is the return missing?)",
+    MethodType: "a method (are its parentheses missing?)",
+    list: "a list; write return stack(...) of its entries",
+    tuple: "a tuple; write return stack(...) of its entries",
+}
+
+
 def _kind(result: Any) -> str:
-    return "nothing (is the return missing?)" if result is None else f"a {type(result).__name__}"
+    return _KINDS.get(result.__class__, f"a {result.__class__.__name__}")
 
 
 def _all_used(graph: Graph) -> None:
