@@ -130,7 +130,7 @@ def mend(told):
     for command in told.splitlines()[-1].removeprefix("mend it with: ").split(" && "):
         tool, *words = shlex.split(command)
         if tool == "rm":
-            [Path(word).unlink() for word in words]
+            subprocess.run([tool, *words], check=True)
         else:
             assert tool == "liegen"
             run(*words)
@@ -149,6 +149,15 @@ def test_the_cure_of_an_orphan_works(orphans, stale, folder):
     assert all(f"orphan   out/{name}: no manifest lists it" in told for name in orphans)
     mend(told)
     assert "all up to date" in run("check", "out")
+
+
+@pytest.mark.parametrize("name", ["-out", "-- -x", "it's out", "a/-b"])
+def test_the_cure_in_a_folder_with_an_odd_name(name, folder):
+    run("generate", "a.py", "-o", name)
+    Path(name, "c/old.c").write_text("")
+    Path(name, "c/first.c").unlink()
+    mend(run("check", "--", name, code=1))
+    assert "all up to date" in run("check", "--", name)
 
 
 def test_an_orphan_that_the_manifest_lists_goes_with_generate(folder):
@@ -285,6 +294,40 @@ def test_other_peoples_json_is_no_manifest(text, folder):
     assert "all up to date" in run("check", "out")
 
 
+@pytest.mark.parametrize("part", ["out/c", "out/c/", "out/a_gen", "out/x/../c", "link"])
+def test_no_tree_is_written_into_the_folder_of_another(part, folder):
+    """Its files would be orphans of that one, which its check says are to be removed."""
+    run("generate", "a.py", "-o", "out")
+    Path("out/x").mkdir()
+    Path("link").symlink_to("out/c")
+    before = files(folder)
+    told = run("generate", "b.py", "-o", part, code=2)
+    assert "is a part of the tree of a.py, as a_gen.json in the folder above it lists; nothing was" in told
+    assert files(folder) == before
+    run("generate", "b.py", "-o", "out/x")
+    assert "all up to date" in run("check", "out")
+
+
+def test_a_folder_that_cannot_be_read(folder):
+    run("generate", "a.py", "-o", "out")
+    Path("out/c").chmod(0)
+    words = shlex.join([sys.executable, "-m", "liegen", "check", "out"])
+    plain = ["capsh", "--drop=cap_dac_override,cap_dac_read_search", "--", "-c", words]
+    if os.getuid() == 0 and not shutil.which("capsh"):
+        pytest.skip("root reads everything, and capsh is not here")
+    command = plain if os.getuid() == 0 else shlex.split(words)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    Path("out/c").chmod(0o755)
+    assert done.returncode == 2
+    assert done.stderr == "Error: cannot read out/c/a_gen.h: Permission denied\n"
+
+
+def test_a_folder_whose_name_has_a_line_feed(folder):
+    told = run("generate", "a.py", "-o", "x\ny\x1b[31m")
+    assert told.splitlines()[-1].endswith(r" to x\ny\x1b[31m/a_gen and x\ny\x1b[31m/c")
+    assert run("check", "x\ny\x1b[31m") == "x\\ny\\x1b[31m: 12 files, all up to date\n"
+
+
 # --- places -----------------------------------------------------------------------------------------------
 
 LONG = "n" * 300
@@ -297,10 +340,12 @@ LONG = "n" * 300
     (f"new/{LONG}/x", "File name too long"),
     ("d/" * 3000, "File name too long"),
     ("/proc/out", "cannot write to /proc/out"),
-    ("loop/out", "cannot write to loop/out|is a file"),
+    ("loop/out", "cannot write to loop/out|is a link to nothing"),
+    ("dangling", "dangling is a link to nothing; choose another folder"),
 ])  # fmt: skip
 def test_a_place_that_cannot_be_written_to(place, message, folder):
     Path("loop").symlink_to("loop")
+    Path("dangling").symlink_to("nowhere")
     before = files(folder)
     told = run("generate", "a.py", "-o", place, "-t", "numpy", code=2)
     assert any(part in told for part in message.split("|"))

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from liegen.text import one_line
+
 from .generate import Request, generate, rendered, requested
 from .shared import say, source_argument
 
@@ -31,12 +33,16 @@ def check(directory: str, source: str | None) -> None:
     written is put back first.
     """
     from liegen.emit import check_tree
+    from liegen.errors import OutputError
 
     clean = True
     for manifest, request in _requests(Path(directory), source):
         folder = manifest.path.parent
         files = rendered(request, request.chosen(request.source), manifest.regenerate)
-        report = check_tree(files, folder)
+        try:
+            report = check_tree(files, folder)
+        except OSError as error:
+            raise OutputError(f"cannot read {error.filename or folder}: {error.strerror}") from None
         for line in _lines(report, folder, len(files)):
             say(line)
         if not report.ok:
@@ -123,7 +129,9 @@ def _cure(report: TreeReport, folder: Path, request: Request) -> str:
 
     An orphan that the manifest lists makes a change of the manifest too.
     """
-    steps = [shlex.join(["rm", *(str(folder / path) for path in report.unlisted)])] if report.unlisted else []
+    orphans = [str(folder / path) for path in report.unlisted]
+    end = ["--"] if str(folder).startswith("-") else []
+    steps = [shlex.join(["rm", *end, *orphans])] if orphans else []
     if report.missing or report.changed:
         steps.append(request.command(request.source, str(folder)))
     return " && ".join(steps)
@@ -132,14 +140,14 @@ def _cure(report: TreeReport, folder: Path, request: Request) -> str:
 def _lines(report: TreeReport, folder: Path, count: int) -> Iterable[str]:
     """What differs, one file a line, with the beginning of each diff."""
     if report.ok:
-        yield f"{folder}: {count} files, all up to date"
+        yield one_line(f"{folder}: {count} files, all up to date")
     for path in report.missing:
-        yield f"missing  {folder / path}"
+        yield one_line(f"missing  {folder / path}")
     for path in report.orphans:
         known = "no manifest lists it" if path in report.unlisted else "liegen would not write it"
-        yield f"orphan   {folder / path}: {known}"
+        yield one_line(f"orphan   {folder / path}: {known}")
     for change in report.changed:
-        yield f"changed  {folder / change.path}"
+        yield one_line(f"changed  {folder / change.path}")
         diff = change.diff.splitlines()
         yield from (f"    {line}" for line in diff[:SHOWN])
         if len(diff) > SHOWN:

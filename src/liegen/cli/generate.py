@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from liegen.text import one_line
+
 from .shared import (
     Convention,
     chosen,
@@ -194,8 +196,9 @@ def generate(output: str, **given: Any) -> None:
     )
     say()
     for path in done.removed:
-        say(f"removed {Path(output, path)}")
+        say(one_line(f"removed {Path(output, path)}"))
     many = f"{len(functions)} factors" if len(functions) > 1 else "1 factor"
     say(f"derived {many} in {times[1] - times[0]:.2f} s, checked and rendered in {times[2] - times[1]:.2f} s")
     folders = sorted({str(Path(output, path).parent) for path in files if "/" in path})
-    say(f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date) to {' and '.join(folders)}")
+    wrote = f"wrote {len(done.written)} files ({len(done.unchanged)} were up to date)"
+    say(one_line(f"{wrote} to {' and '.join(folders)}"))

@@ -114,9 +114,26 @@ def _check_place(directory: Path) -> None:
         ) from None
     existing = next((p for p in (directory, *directory.parents) if p.exists() or p.is_symlink()), None)
     if existing and not existing.is_dir():
-        said = f"{_shown(existing)} is a file"
+        said = f"{_shown(existing)} is a {'file' if existing.exists() else 'link to nothing'}"
         said += "" if existing == directory else f", so nothing can be written to {_shown(directory)}"
         raise OutputError(f"{said}; choose another folder")
+    _check_no_part(directory)
+
+
+def _check_no_part(directory: Path) -> None:
+    """Raise OutputError for a folder that another tree has for its files, such as its ``c``."""
+    place = directory.resolve()
+    try:
+        above = manifests(place.parent)
+    except OutputError:  # a file that is damaged lists nothing
+        return
+    for manifest in above:
+        if any(path.startswith(f"{place.name}/") for path in manifest.files):
+            raise OutputError(
+                f"{_shown(directory)} is a part of the tree of {manifest.source or 'the library'}, as "
+                f"{manifest.path.name} in the folder above it lists; nothing was changed. "
+                "Choose another folder"
+            )
 
 
 def _shown(directory: Path) -> str:
