@@ -61,7 +61,7 @@ class Graph:
 def read_g2o(path: Path) -> Graph:
     """Read a pose graph; raise `G2oError` with the line number where the file is wrong."""
     # Some editors begin a file with a byte order mark.
-    return read_lines(path.name, path.read_text(encoding="utf-8-sig", errors="replace").split("\n"))
+    return read_lines(path.name, path.read_text(encoding="utf-8-sig", errors="surrogateescape").split("\n"))
 
 
 def read_lines(name: str, lines: Sequence[str]) -> Graph:

@@ -28,6 +28,7 @@ there is no C compiler the factors run as NumPy code.
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -174,11 +175,13 @@ def main(
             require_picture(Path(out))
         if output and not output.absolute().parent.is_dir():
             raise G2oError(f"--output {output}: there is no folder {output.parent}; make it first.")
+        if output and not os.access(output if output.exists() else output.absolute().parent, os.W_OK):
+            raise G2oError(f"--output {output}: it cannot be written; choose another place.")
         graph = read_g2o(file) if file else made_sphere()
         click.echo(describe(graph, file))
         first, last = run(graph, tol, max_iterations)
         if output:
-            output.write_text(written(graph, last.values), encoding="utf-8")
+            output.write_text(written(graph, last.values), encoding="utf-8", errors="surrogateescape")
             click.echo(f"solved graph: {output}")
         if not no_picture:
             draw(graph, (first.values, first.error), (last.values, last.error), Path(out))

@@ -144,6 +144,8 @@ def _decorated(
     if not inspect.isfunction(function):
         raise DefinitionError(f"{here()}: a factor is made of a function, got a {type(function).__name__}")
     what = f"{here()}: {function.__name__}"
+    if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
+        raise DefinitionError(f"{what}: a factor returns its value, without async and yield; write return")
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
         function,

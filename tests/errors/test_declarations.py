@@ -252,3 +252,19 @@ def test_a_number_as_default():
 
     np.testing.assert_allclose(np.asarray(scaled(X)), 0.5 * X)
     np.testing.assert_allclose(np.asarray(scaled(X, k=2.0)), 2 * X)
+
+
+def test_a_factor_is_a_plain_function(recwarn):
+    def yields():
+        @factor
+        def pull(x: R3):
+            yield x
+
+    def waits():
+        @factor
+        async def pull(x: R3):
+            return x
+
+    for define in (yields, waits):
+        refused(define, ": pull: a factor returns its value, without async and yield")
+    assert not recwarn.list

@@ -387,6 +387,13 @@ def test_few_digits_of_a_quaternion_are_made_unit():
     )
 
 
+def test_a_comment_in_another_encoding_stays(folder):
+    (folder / "in.g2o").write_bytes(b"# caf\xe9\n" + (POSES + EDGE).encode())
+    done = CliRunner().invoke(pose_graph.main, ["in.g2o", "--no-picture", "--output", "out.g2o"])
+    assert done.exit_code == 0, done.output
+    assert (folder / "out.g2o").read_bytes().startswith(b"# caf\xe9\nVERTEX_SE2 0 ")
+
+
 def test_a_byte_order_mark_and_lines_of_other_systems(folder):
     (folder / "mark.g2o").write_bytes(b"\xef\xbb\xbf" + (POSES + EDGE).replace("\n", "\r\n").encode())
     assert g2o.read_g2o(folder / "mark.g2o").vertices["SE2"].ids.tolist() == [0, 1]
@@ -460,6 +467,14 @@ def test_wrong_options_are_refused_before_the_solve(options, code, says):
     done = CliRunner().invoke(pose_graph.main, options)
     assert done.exit_code == code
     assert says in done.stderr
+    assert done.stdout == ""
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_the_solve(monkeypatch):
+    monkeypatch.setattr(pose_graph.os, "access", lambda path, mode: False)
+    done = CliRunner().invoke(pose_graph.main, ["--no-picture", "--output", "out.g2o"])
+    assert done.exit_code == 1
+    assert "--output out.g2o: it cannot be written" in done.stderr
     assert done.stdout == ""
 
 
