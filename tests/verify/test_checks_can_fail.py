@@ -168,6 +168,19 @@ def test_a_factor_that_is_finite_nowhere_is_told_with_line_and_cure_and_without_
     assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]
 
 
+def test_a_constant_that_is_not_finite_is_told_with_its_line():
+    @factor
+    def beyond(x: SE3):
+        return x.log() * float("inf")
+
+    report = verify([beyond], samples=5, workers=1)
+    assert re.search(
+        r"'mul' at test_checks_can_fail.py:\d+ is the first that is not finite, of a constant",
+        report.factors[0].checks[0].note,
+    )
+    assert report.factors[0].off_unit == ()
+
+
 def test_cases_without_a_sample_inside_say_which_requirement_refuses_them():
     def far(draw, case):
         return {"x": R1(2.0 if case.spread > 1 else 0.5), "z": R1(0.0)}

@@ -48,7 +48,8 @@ def check_factor(
     ``conditioned`` as in :func:`expect`; ``gauss_newton``: of the Gauss-Newton terms too.
     """
     checks = _checks(function, place, samples, seed, conditioned, gauss_newton)
-    return FactorReport(function.name, checks, off_unit(function, seed))
+    compared = len(checks) > 1  # else there is no sample, or no number
+    return FactorReport(function.name, checks, off_unit(function, seed) if compared else ())
 
 
 def _checks(

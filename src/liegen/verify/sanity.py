@@ -55,9 +55,11 @@ def _message(function: AnyFunction, name: str, sample: Sample, *, value: bool) -
     graph = function.graph
     culprit = first_not_finite(graph, sample.values, derivative=not value)
     kind = "output" if value else "Jacobian"
+    constant = culprit is not None and not all(_finite(n.operation.coords) for n in _constants(culprit))
+    of = ", of a constant that is not finite itself" if constant else ""
     found = (
         f"{'' if value else 'the derivative of '}{culprit.operation.name!r} at {culprit.site} "
-        "is the first that is not finite"
+        f"is the first that is not finite{of}"
         if culprit
         else "no single operation is to blame"
     )
@@ -68,10 +70,19 @@ def _message(function: AnyFunction, name: str, sample: Sample, *, value: bool) -
     )
 
 
+def _constants(node: Node) -> list[Any]:
+    """The constants among the operands."""
+    return [n for n in node.operands if isinstance(n.operation, Leaf) and n.operation.coords]
+
+
 def first_not_finite(graph: Graph, values: Mapping[str, Any], *, derivative: bool) -> Node | None:
-    """The first operation with a value (or a derivative block) that is not finite for finite operands."""
+    """The first operation with a value (or a derivative block) that is not finite for finite operands.
+
+    A constant that is not finite is the mistake of the operation that has it.
+    """
     for node, result, operands in _evaluated(graph, values):
-        if not all(_finite(c) for c in operands):
+        computed = zip(node.operands, operands, strict=True)
+        if not all(_finite(c) for n, c in computed if not isinstance(n.operation, Leaf)):
             continue
         if not _finite(result) or (derivative and not _finite(_block_entries(node, result, operands))):
             return node
