@@ -18,6 +18,7 @@ from liegen.verify.backends import program_evaluator
 from liegen.verify.differences import differences
 from liegen.verify.draws import batch, draw_samples, schedule
 from liegen.verify.taylor import remainder_slopes, taylor
+from liegen.verify.unit_length import off_unit
 
 FACTORS = [library.between_se3, library.between_se2, library.prior_s2, library.sfm_cal3_bundler]
 
@@ -166,6 +167,18 @@ def test_a_factor_that_is_finite_nowhere_is_told_with_line_and_cure_and_without_
     assert re.search(r"log at test_checks_can_fail.py:\d+ needs -norm\(.*> 0.*draw inside with", notes[0])
     assert re.search(r"'div' at test_checks_can_fail.py:\d+ .*require\(", notes[1])
     assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]
+
+
+def test_figures_off_unit_length_are_of_samples_that_have_numbers():
+    """Half of all numbers have no logarithm; that says nothing of quaternions."""
+
+    @factor
+    def of_a_logarithm(x: SE3, *, z: R1):
+        return x.range([0.0, 0.0, 0.0]) - log(z)
+
+    figures = off_unit(of_a_logarithm, 0)
+    assert len(figures) == 2
+    assert all(o.as_is < 1e-2 and o.normalised < 1e-12 for o in figures)
 
 
 def test_a_constant_that_is_not_finite_is_told_with_its_line():

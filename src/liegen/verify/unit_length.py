@@ -6,7 +6,7 @@ the unit numbers. Rotation matrices are scaled alike; the nearest rotation stays
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from .draws import TRIES, AnyFunction, Sample, batch, draw_one, generator_for, p
 from .report import OffUnit
 
 Array = NDArray[np.float64]
+Evaluate = Callable[[Mapping[str, Array]], Mapping[str, Array]]
 
 #: By how much lengths are off.
 OFF = (1e-8, 1e-3)
@@ -29,7 +30,7 @@ def off_unit(function: AnyFunction, seed: int) -> tuple[OffUnit, ...]:
     """The largest errors over a few random samples, as the code is and with ``normalise``.
 
     Relative to max(1, s), with s the largest absolute entry of the inputs or of the right result. Empty where
-    nothing is stored with unit length, or no sample is inside the domain.
+    nothing is stored with unit length, or no sample is inside the domain with finite results.
     """
     places = {p.name: p.storage.lengths for p in function.graph.parameters}
     if not any(places.values()):
@@ -37,16 +38,26 @@ def off_unit(function: AnyFunction, seed: int) -> tuple[OffUnit, ...]:
     inside = program_domain(function)
     draw = Draw(generator_for("off unit length", seed, function.name))
     drawn = (draw_one(function, draw, CASES[0]) for _ in range(SAMPLES + TRIES))
-    kept: tuple[Sample, ...] = tuple(s for s in drawn if inside(function.graph, s.values))[:SAMPLES]
+    kernels = function.kernel, function.in_layout(None, normalise=True).kernel
+    evaluated = program_evaluator(kernels[0].jacobians)
+    kept = _finite(evaluated, tuple(s for s in drawn if inside(function.graph, s.values)))[:SAMPLES]
     if not kept:
         return ()
     given = batch(kept)
-    kernels = function.kernel, function.in_layout(None, normalise=True).kernel
-    right = program_evaluator(kernels[0].jacobians)(given)
+    right = evaluated(given)
     return tuple(
         OffUnit(off, *(_error(kernel, _stretched(given, places, off), right) for kernel in kernels))
         for off in OFF
     )
+
+
+def _finite(evaluated: Evaluate, samples: tuple[Sample, ...]) -> tuple[Sample, ...]:
+    """The samples at which every result is finite: log(z) has none for half of all numbers."""
+    if not samples:
+        return samples
+    results = evaluated(batch(samples)).values()
+    finite = np.all([np.isfinite(a.reshape(len(a), -1)).all(axis=1) for a in results], axis=0)
+    return tuple(s for s, good in zip(samples, finite, strict=True) if good)
 
 
 def _stretched(
