@@ -192,7 +192,7 @@ BAD = {
     ),
     "cross": (
         lambda: uncertainty.of_compose(T3, S6, S6, 1.5 * S6),
-        r"joint covariance.*not positive definite: eigenvalue 0 of 12",
+        r"joint covariance.*not positive semidefinite: eigenvalue 0 of 12",
     ),
     "nan": (lambda: uncertainty.whiten([0.0, 1.0], [[1, np.nan], [0, 1]]), r"S\[0, 1\] is nan"),
     "text": (lambda: uncertainty.sqrt_info("one"), r"S must be an array of numbers, got a str"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,51 +43,109 @@ def square(a: ArrayLike, n: int | None, name: str) -> Array:
 
 
 def covariance(a: ArrayLike, n: int | None = None, name: str = "S") -> Array:
-    """A covariance of shape (..., n, n), exactly symmetric.
+    """A covariance of shape (..., n, n), exactly symmetric: positive semidefinite to rounding.
 
-    Raises UncertaintyError unless it is symmetric (to 1e-9 of the standard deviations; what is below is
-    rounding and is averaged away) and positive definite: the eigenvalues of the correlation matrix, which
-    do not depend on units, must exceed n times the machine precision.
+    What is known exactly has variance 0, and covariance 0 with all else. Raises UncertaintyError unless it is
+    symmetric (to 1e-9 of the standard deviations; what is below is rounding and is averaged away), and the
+    eigenvalues of the correlation matrix, which do not depend on units, are above -n times 1e-9. A row that
+    is all below the rounding of the variances that it is coupled to counts as 0.
     """
     S = square(a, n, name)
+    rounding = _rounding(S)
+    return _checked(S, rounding, _exact(S, rounding), name, _SEMIDEFINITE)
+
+
+def definite(a: ArrayLike, n: int | None = None, name: str = "S") -> Array:
+    """A covariance that has an inverse, exactly symmetric.
+
+    Raises UncertaintyError likewise, and where an eigenvalue of the correlation matrix is not above n times
+    the machine precision.
+    """
+    S = square(a, n, name)
+    return _checked(S, np.zeros(S.shape[:-1]), np.zeros(S.shape[:-1], dtype=bool), name, _DEFINITE)
+
+
+class _Kind(NamedTuple):
+    """``eigenvalue`` times n is the smallest one of a correlation matrix; ``cure`` of a variance."""
+
+    word: str
+    eigenvalue: float
+    cure: str
+
+
+_EPS = float(np.finfo(np.float64).eps)
+_SMALL = "give a direction that is known exactly a small variance, one that is unknown a large variance"
+_SEMIDEFINITE = _Kind("semidefinite", -ASYMMETRY, "what is known exactly has 0 in its whole row and column")
+_DEFINITE = _Kind("definite", _EPS, _SMALL)
+#: Part of a variance that rounding may take, however much larger the others are.
+_LOST = 1e-3
+
+
+def _rounding(S: Array) -> Array:
+    """What float64 may leave of a variance that is 0, (..., n): relative to the largest tied to it."""
+    n = S.shape[-1]
+    tied = (S != 0) | np.swapaxes(S != 0, -1, -2) | np.eye(n, dtype=bool)
+    for _ in range(n.bit_length()):
+        tied = tied @ tied
+    variance = np.abs(np.diagonal(S, axis1=-2, axis2=-1))
+    largest: Array = np.max(np.where(tied, variance[..., None, :], 0.0), axis=-1)
+    return (16 * n * _EPS) * largest
+
+
+def _exact(S: Array, rounding: Array) -> NDArray[np.bool_]:
+    """What is known exactly, (..., n): its row and column are 0, or all of it is rounding."""
     variance = np.diagonal(S, axis1=-2, axis2=-1)
-    if np.any(variance <= 0):
-        index = _place(variance <= 0)
+    off = np.abs(np.where(np.eye(S.shape[-1], dtype=bool), 0.0, S))
+    most = np.maximum(off.max(axis=-1), off.max(axis=-2))
+    alone = (most == 0) & (variance <= 0) & (variance >= -rounding.max(axis=-1, keepdims=True))
+    return alone | ((np.abs(variance) <= rounding) & (most <= rounding))
+
+
+def _checked(S: Array, rounding: Array, exact: NDArray[np.bool_], name: str, kind: _Kind) -> Array:
+    variance = np.diagonal(S, axis1=-2, axis2=-1)
+    bad = (variance <= 0) & ~exact
+    if np.any(bad):
+        index = _place(bad)
         raise UncertaintyError(
-            f"{here()}: {_element(name, index[:-1])} is not positive definite: variance {index[-1]} (counted "
-            f"from 0) is {variance[index]:.6g}; {_EXACT}"
+            f"{here()}: {_element(name, index[:-1])} is not positive {kind.word}: variance {index[-1]} "
+            f"(counted from 0) is {variance[index]:.6g}; {kind.cure}"
         )
-    deviation = np.sqrt(variance)
-    correlation = S / deviation[..., :, None] / deviation[..., None, :]
-    skew = np.abs(correlation - np.swapaxes(correlation, -1, -2))
-    if np.any(skew > ASYMMETRY):
-        *batch, i, j = index = _place(skew > ASYMMETRY)
+    used = np.where(exact, 1.0, variance)
+    rest = np.where(exact[..., :, None] | exact[..., None, :], 0.0, S)
+    lost = np.minimum(rounding, _LOST * used)
+    deviation, blurred = np.sqrt(used), np.sqrt(lost)
+    skew = np.abs(rest - np.swapaxes(rest, -1, -2)) > ASYMMETRY * _outer(deviation) + _outer(blurred)
+    if np.any(skew):
+        *batch, i, j = index = _place(skew)
         raise UncertaintyError(
             f"{here()}: {_element(name, tuple(batch))} is not symmetric: entry [{i}, {j}] is {S[index]:.9g}, "
             f"entry [{j}, {i}] is {S[(*batch, j, i)]:.9g}; if that is rounding give (S + S.T) / 2"
         )
-    _need_positive((correlation + np.swapaxes(correlation, -1, -2)) / 2, name)
+    raised = rest + np.swapaxes(rest, -1, -2) + 2 * (lost + exact)[..., None] * np.eye(S.shape[-1])
+    _need_positive(raised / 2 / _outer(deviation), name, kind)
     return (S + np.swapaxes(S, -1, -2)) / 2
 
 
-_EXACT = "give a direction that is known exactly a small variance, one that is unknown a large variance"
+def _outer(v: Array) -> Array:
+    return v[..., :, None] * v[..., None, :]
 
 
-def _need_positive(correlation: Array, name: str) -> None:
+def _need_positive(correlation: Array, name: str, kind: _Kind) -> None:
     values, vectors = np.linalg.eigh(correlation)
     n = correlation.shape[-1]
-    least = n * np.finfo(np.float64).eps
-    if np.any(values[..., 0] <= least):
-        index = _place(values[..., 0] <= least)
+    least = n * kind.eigenvalue
+    bad = values[..., 0] <= least
+    if np.any(bad):
+        index = _place(bad)
         value, direction = values[index][0], vectors[index][:, 0]
         along = ", ".join(f"{x:.2g}" for x in direction)
         cure = (
-            _EXACT
-            if value > -16 * least
+            _SMALL
+            if value > -16 * n * _EPS
             else "check the entries off its diagonal: order, frames, a transposed block"
         )
         raise UncertaintyError(
-            f"{here()}: {_element(name, index)} is not positive definite: eigenvalue 0 of {n} of its "
+            f"{here()}: {_element(name, index)} is not positive {kind.word}: eigenvalue 0 of {n} of its "
             f"correlation matrix is {value:.6g}, along ({along}); it must exceed {least:.2g}; {cure}"
         )
 
@@ -114,8 +172,8 @@ def joint(S1: ArrayLike, S2: ArrayLike, cross: ArrayLike | None = None) -> Array
     """The covariance [[S1, C], [C^T, S2]] of (n1, n2), of shape (..., n1 + n2, n1 + n2).
 
     ``cross`` is C = E[n1 n2^T], of shape (..., n1, n2); None: independent. Each of n1 and n2 lives in its
-    own body frame. Raises UncertaintyError when the whole is not positive definite: a cross covariance can
-    be too large.
+    own body frame. Raises UncertaintyError when the whole is not positive semidefinite: a cross covariance
+    can be too large.
     """
     A, B = covariance(S1, name="S1"), covariance(S2, name="S2")
     if cross is None:
@@ -144,9 +202,10 @@ def sqrt_info(S: ArrayLike) -> Array:
     """The upper triangular R with R^T R = S^-1 and a positive diagonal, of the shape of S.
 
     R h is whitened: its covariance is the identity when that of h is S. S is factored from its last row up
-    (S = U U^T, R = U^-1), so that S^-1 is never formed.
+    (S = U U^T, R = U^-1), so that S^-1 is never formed. Raises UncertaintyError where S is only semidefinite:
+    it has no inverse.
     """
-    reverse = covariance(S)[..., ::-1, ::-1]
+    reverse = definite(S)[..., ::-1, ::-1]
     upper = np.linalg.cholesky(reverse)[..., ::-1, ::-1]
     return np.triu(np.linalg.inv(upper)).astype(np.float64, copy=False)
 
@@ -164,7 +223,7 @@ def whiten(h: ArrayLike, S: ArrayLike) -> Array:
     h = numbers(h, "h")
     if h.ndim == 0:
         raise UncertaintyError(f"{here()}: h must be a vector of shape (..., n), got a single number")
-    R = sqrt_info(covariance(S, h.shape[-1]))
+    R = sqrt_info(definite(S, h.shape[-1]))
     return (R @ h[..., None])[..., 0]
 
 

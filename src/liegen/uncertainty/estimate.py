@@ -12,7 +12,7 @@ from liegen.manifolds import Group
 from liegen.manifolds.group import tangent_class
 from liegen.manifolds.node import here
 
-from .covariance import Array, covariance, numbers, square
+from .covariance import Array, covariance, definite, numbers, square
 from .covariance import sqrt_info as root_of
 from .transport import adjoint
 
@@ -34,11 +34,23 @@ def sample(z: G, S: ArrayLike, rng: np.random.Generator, size: int | tuple[int, 
             f"{here()}: rng must be a generator, np.random.default_rng(seed), got a {type(rng).__name__}"  # pyright: ignore[reportUnreachable]
         )
     n = z.form.dim
-    root = np.linalg.cholesky(covariance(S, n))
+    root = _root(covariance(S, n))
     batch = np.broadcast_shapes(np.asarray(z).shape[:-1], root.shape[:-2])
     extra = (size,) if isinstance(size, int) else tuple(size)
     noise = root @ rng.standard_normal((*extra, *batch, n, 1))
     return z.compose(type(z).exp(tangent_class(n).from_storage(noise[..., 0])))
+
+
+def _root(S: Array) -> Array:
+    """A square root B with B B^T = S, also where S is only semidefinite: scaled, so that units may differ."""
+    deviation: Array = np.sqrt(np.maximum(np.diagonal(S, axis1=-2, axis2=-1), 0.0))
+    try:
+        return np.linalg.cholesky(S).astype(np.float64, copy=False)
+    except np.linalg.LinAlgError:
+        unit = np.where(deviation > 0, deviation, 1.0)
+        values, vectors = np.linalg.eigh(S / unit[..., :, None] / unit[..., None, :])
+        sizes: Array = np.sqrt(np.maximum(values, 0.0))
+        return deviation[..., None] * vectors * sizes[..., None, :]
 
 
 def posterior(A: ArrayLike, S: ArrayLike | None = None, *, sqrt_info: ArrayLike | None = None) -> Array:
@@ -62,7 +74,7 @@ def posterior(A: ArrayLike, S: ArrayLike | None = None, *, sqrt_info: ArrayLike 
     R = (
         square(sqrt_info, m, "sqrt_info")
         if sqrt_info is not None
-        else root_of(covariance([] if S is None else S, m))
+        else root_of(definite([] if S is None else S, m))
     )
     B = R @ rows
     _need_rank(B, m, n)

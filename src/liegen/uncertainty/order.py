@@ -11,6 +11,7 @@ from liegen.errors import UncertaintyError
 from liegen.manifolds import SE3, Group
 from liegen.manifolds.form import PoseForm
 from liegen.manifolds.node import here
+from liegen.manifolds.similarity_form import SimilarityForm
 
 from .covariance import Array, covariance, through
 
@@ -18,17 +19,18 @@ Order = Literal["rotation-first", "translation-first"]
 
 
 def to_order(G: type[Group], S: ArrayLike, order: Order) -> Array:
-    """S (..., n, n) of the pose group G, rows and columns taken from liegen's order to ``order``.
+    """S (..., n, n) of the group G, rows and columns taken from liegen's order to ``order``.
 
-    liegen's order is that of GTSAM: SE3 rotation first, SE2 translation first.
+    G is SE2, SE3, Sim2 or Sim3. liegen's order is that of GTSAM: SE3 and Sim3 rotation first, SE2 and Sim2
+    translation first; the logarithm of a scale stays last, as in Sophus.
     """
-    p = _permutation(G, order)
+    p = permutation(G, order)
     return covariance(S, len(p))[..., p[:, None], p]
 
 
 def from_order(G: type[Group], S: ArrayLike, order: Order) -> Array:
-    """S (..., n, n) of the pose group G, rows and columns taken from ``order`` to liegen's order."""
-    p = np.argsort(_permutation(G, order))
+    """S (..., n, n) of the group G, rows and columns taken from ``order`` to liegen's order."""
+    p = np.argsort(permutation(G, order))
     return covariance(S, len(p))[..., p[:, None], p]
 
 
@@ -70,23 +72,23 @@ def _ros_map(T: SE3) -> Array:
     return M
 
 
-def _permutation(G: type[Group], order: Order) -> NDArray[np.intp]:
+def permutation(G: type[Group], order: Order) -> NDArray[np.intp]:
     """Positions in liegen's order of the coordinates listed in ``order``."""
     form = G.form
-    if not isinstance(form, PoseForm):
+    if not isinstance(form, PoseForm | SimilarityForm):
         raise UncertaintyError(
             f"{here()}: {G.__name__} has no rotation and translation to reorder; "
-            "give a pose group, SE2 or SE3"
+            "give a pose group, SE2 or SE3, or Sim2 or Sim3"
         )
-    first, second = form.in_order(_row(form.rotation.dim), _row(form.rotation.space))
-    start = len(first)
-    parts = [np.arange(start), start + np.arange(len(second))]
-    rotation, translation = parts if form.rotation_first else parts[::-1]
-    orders = {"rotation-first": (rotation, translation), "translation-first": (translation, rotation)}
+    turns, moves, n = form.rotation.dim, form.rotation.space, form.dim
+    start = 0 if form.rotation_first else moves
+    rotation = np.arange(start, start + turns)
+    translation = np.setdiff1d(np.arange(turns + moves), rotation)
+    scale = np.arange(turns + moves, n)
+    orders = {
+        "rotation-first": (rotation, translation, scale),
+        "translation-first": (translation, rotation, scale),
+    }
     if order not in orders:
         raise UncertaintyError(f"{here()}: unknown order {order!r}; one of {', '.join(orders)}")
     return np.concatenate(orders[order])
-
-
-def _row(n: int) -> tuple[tuple[int], ...]:
-    return tuple((k,) for k in range(n))
