@@ -8,14 +8,18 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from liegen.errors import ToolError
 
+from .sparse_inputs import damping_of, matrix_of, need_symmetric, right_sides
+
 Array = NDArray[np.float64]
 Backend = Literal["cholmod", "superlu"]
-#: Numbers of the matrix in the order of its columns, and b: the solution.
+#: Numbers of the matrix in the order of its columns, and b (dim,) or (dim, k): the solution, of b's shape.
 Solve = Callable[[Array, Array], Array]
+#: Pivots of the elimination, relative to the diagonal of H, from which on they are rounding.
+SMALLEST_PIVOT = 16 * float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,19 +41,23 @@ class Columns:
 class _Analysis:
     """The pattern as the matrix gave it, and what solves with numbers in it."""
 
+    layout: tuple[Any, ...]
     indices: NDArray[Any]
     indptr: NDArray[Any]
-    shape: tuple[int, ...]
     columns: Columns
     solve: Solve
 
     def fits(self, H: Any) -> bool:
-        """Whether a matrix has this pattern."""
+        """Whether a matrix has this pattern, in the same format."""
         return (
-            H.data.shape == self.shape
+            _layout(H) == self.layout
             and np.array_equal(H.indptr, self.indptr)
             and np.array_equal(H.indices, self.indices)
         )
+
+
+def _layout(H: Any) -> tuple[Any, ...]:
+    return H.format, H.shape, H.data.shape
 
 
 class SparseSolver:
@@ -72,20 +80,24 @@ class SparseSolver:
         self.backend: Backend = "superlu" if found is None else "cholmod"
         self._analysis: _Analysis | None = None
 
-    def __call__(self, H: Any, b: Array, damping: float = 0.0) -> Array:
-        """The solution d (dim,) for a sparse array ``H`` of SciPy, with both triangles, and ``b`` (dim,).
+    def __call__(self, H: Any, b: ArrayLike, damping: float = 0.0) -> Array:
+        """The solution d, of the shape of ``b``: (dim,), or (dim, k) for k right-hand sides.
 
-        Formats: BSR, CSC, CSR; the other ones are converted. Raises LinAlgError for a matrix that is not
-        positive definite (SuperLU: that is singular), ValueError for one that is not square, or has an entry
-        twice or none on its diagonal.
+        ``H`` is a sparse array of SciPy with both triangles, or a dense (dim, dim) array. BSR, CSC and CSR of
+        float64 are read as they are, all else is converted. ``damping`` is relative to the diagonal.
+        Raises LinAlgError for a matrix that is not positive definite, also when a pivot is only rounding;
+        ValueError for other shapes, numbers that are not finite, a matrix that is not symmetric (looked at
+        when the pattern is), or has an entry twice or none on its diagonal, and for negative damping;
+        TypeError for what holds no real numbers.
         """
-        matrix = H if H.format in ("bsr", "csc", "csr") else H.tocsc()
+        matrix, scale = matrix_of(H), 1.0 + damping_of(damping)
+        sides = right_sides(b, int(matrix.shape[0]))
         if self._analysis is None or not self._analysis.fits(matrix):
             self._analysis = _analysed(matrix, self.backend)
         columns = self._analysis.columns
         data = matrix.data.ravel()[columns.take]
-        data[columns.diagonal] *= 1.0 + damping
-        return self._analysis.solve(data, np.asarray(b, dtype=np.float64))
+        data[columns.diagonal] *= scale
+        return self._analysis.solve(data, sides)
 
 
 def _installed(name: str) -> Any:
@@ -98,14 +110,13 @@ def _installed(name: str) -> Any:
 def _analysed(H: Any, backend: Backend) -> _Analysis:
     prepare = {"cholmod": _with_cholmod, "superlu": _with_superlu}[backend]
     columns = _columns(H, lower=backend == "cholmod")
-    return _Analysis(H.indices.copy(), H.indptr.copy(), H.data.shape, columns, prepare(columns))
+    need_symmetric(H)
+    return _Analysis(_layout(H), H.indices.copy(), H.indptr.copy(), columns, prepare(columns))
 
 
 def _columns(H: Any, *, lower: bool) -> Columns:
     """The pattern by columns, of the lower triangle alone or of both."""
     dim = int(H.shape[0])
-    if H.shape != (dim, dim):
-        raise ValueError(f"H must be square, its shape is {H.shape}")
     numbers = np.arange(int(H.data.size), dtype=np.float64)
     places = type(H)((numbers.reshape(H.data.shape), H.indices, H.indptr), shape=H.shape).tocsc()
     places.sort_indices()
@@ -130,13 +141,17 @@ def _with_cholmod(columns: Columns) -> Solve:
 
     def solve(data: Array, b: Array) -> Array:
         matrix.V = cvxopt.matrix(data)
-        found = cvxopt.matrix(b)
         try:
             cholmod.numeric(matrix, factor)
-        except ArithmeticError as error:
-            raise np.linalg.LinAlgError(f"H is not positive definite (CHOLMOD: {error})") from None
+        except ArithmeticError:
+            raise _not_definite("a pivot is not positive") from None
+        order = cvxopt.matrix(np.arange(columns.dim, dtype=np.float64))
+        cholmod.solve(factor, order, sys=7)  # the permutation
+        pivots = np.square(np.array(cholmod.diag(factor)).ravel())
+        _need_pivots(pivots, np.array(order).ravel().astype(np.intp), data[columns.diagonal])
+        found = cvxopt.matrix(b)
         cholmod.solve(factor, found)
-        return np.array(found).ravel()
+        return np.array(found).reshape(b.shape)
 
     return solve
 
@@ -152,8 +167,26 @@ def _with_superlu(columns: Columns) -> Solve:
             lu = linalg.splu(
                 matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
             )
-        except RuntimeError as error:
-            raise np.linalg.LinAlgError(f"H is singular (SuperLU: {error})") from None
+        except RuntimeError:
+            raise _not_definite("a pivot is 0") from None
+        _need_pivots(lu.U.diagonal(), np.argsort(lu.perm_c), data[columns.diagonal])
         return lu.solve(b)
 
     return solve
+
+
+def _need_pivots(pivots: Array, order: NDArray[np.intp], diagonal: Array) -> None:
+    """Raise LinAlgError unless the pivots, of the unknowns in ``order``, are positive beyond rounding."""
+    bad = np.flatnonzero(~(pivots > SMALLEST_PIVOT * np.abs(diagonal[order])))
+    if len(bad):
+        k = int(order[bad[0]])
+        raise _not_definite(
+            f"the pivot of unknown {k} is {pivots[bad[0]]:.3g}, H[{k}, {k}] {diagonal[k]:.3g}"
+        )
+
+
+def _not_definite(what: str) -> np.linalg.LinAlgError:
+    return np.linalg.LinAlgError(
+        f"H is not positive definite, or singular to rounding: {what}; hold a variable fixed, add a prior "
+        "or give damping"
+    )
