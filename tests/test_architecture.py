@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "liegen"
 #: A part may import the parts before it in this order.
 LAYERS = (
-    "errors", "exits", "text", "advice", "algebra", "coefficients", "manifolds", "charts", "layouts",
+    "errors", "exits", "text", "advice", "names", "algebra", "coefficients", "manifolds", "charts", "layouts",
     "uncertainty", "trace", "differentiate", "noise", "program", "kernel", "choice", "derive", "gauss_newton",
     "arguments", "define", "decorate",
     "samples", "library", "modules", "undisturbed", "user_code", "sources", "emit",

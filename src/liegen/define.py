@@ -14,6 +14,7 @@ from liegen.errors import DefinitionError
 from liegen.layouts import OWN, storage
 from liegen.manifolds import Value
 from liegen.manifolds.node import here
+from liegen.names import check_definition
 from liegen.noise import Weighting, weighted_graph
 from liegen.noise import weighting as read_weighting
 from liegen.trace import (
@@ -70,6 +71,11 @@ class Function(Generic[P, T]):
         )  # fmt: skip
         graph = in_layouts(graph, self.layout, normalise=self.normalise)
         object.__setattr__(self, "plain", graph)
+        arguments, variables = ([p.name for p in ps] for ps in (graph.parameters, graph.variables))
+        outputs = [name for name, _ in graph.outputs]
+        check_definition(self.name, str(graph.site), arguments, variables, outputs, factor=self.is_factor)
+        if self.weighting:
+            object.__setattr__(self, "weighting", self.weighting.beside(arguments))
         weighted = weighted_graph(graph, self.weighting) if self.weighting else graph
         object.__setattr__(self, "graph", weighted)
 

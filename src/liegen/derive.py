@@ -18,6 +18,7 @@ from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
 from liegen.layouts import OWN, Stored, storage
 from liegen.manifolds import Manifold, ManifoldForm, MatrixValue, Vector
+from liegen.names import jacobian_name
 from liegen.noise import Weight, Weighting
 from liegen.program import Port, Program
 from liegen.program.lower import alone, lower
@@ -142,7 +143,7 @@ def lowered(
     stored = {name: storage(node.manifold.form, graph.layout) for name, node in graph.outputs}
     outputs = [(Port(name, s.shape), s.write(scalars[name])) for name, s in stored.items()]
     outputs += [
-        (Port(f"{name}_D_{variable}", (len(m), len(m[0]))), tuple(x for row in m for x in row))
+        (Port(jacobian_name(name, variable), (len(m), len(m[0]))), tuple(x for row in m for x in row))
         for (name, variable), m in blocks.items()
     ]
     return lowered_outputs(graph, values, given, outputs, beside)

@@ -13,6 +13,7 @@ from liegen.choice import Ledger, entries, opened
 from liegen.derive import lowered_outputs, weight_symbols
 from liegen.differentiate import Ladder, Terms, expressions, ladder, linearised, normal_terms
 from liegen.kernel import Kernel, Output, PassCount
+from liegen.names import block_name, gradient_name
 from liegen.noise import Weighted, Weighting
 from liegen.program import Port
 from liegen.program.passes import optimise
@@ -94,9 +95,9 @@ def _terms(steps: Ladder, weighted: Weighted, frontier: int) -> Terms:
 
 
 def _ports(cost: Scalar, terms: Terms) -> list[tuple[Port, Vector]]:
-    gradients = [(Port(f"g_{name}", (len(g),)), g) for name, g in terms.g.items()]
+    gradients = [(Port(gradient_name(name), (len(g),)), g) for name, g in terms.g.items()]
     blocks = [
-        (Port(f"H_{a}_{b}", (len(H), len(H[0]))), tuple([x for row in H for x in row]))
+        (Port(block_name(a, b), (len(H), len(H[0]))), tuple([x for row in H for x in row]))
         for (a, b), H in terms.H.items()
     ]
     return [(Port("cost", (1,)), (cost,)), *gradients, *blocks]
@@ -107,7 +108,7 @@ def _outputs(graph: Graph, weighting: Weighting | None) -> tuple[Output, ...]:
     cost = "half of rho" if weighting and weighting.loss else "half the squared norm of the residual"
     gradients = [
         Output(
-            f"g_{p.name}",
+            gradient_name(p.name),
             f"gradient by the tangent of {p.name}",
             p.manifold.form.tangent,
             p.manifold.form.dim,
@@ -123,7 +124,7 @@ def _block(r: str, p: Parameter, q: Parameter) -> Output:
     shape = (p.manifold.form.dim, q.manifold.form.dim)
     places = tuple(f"{i}_{j}" for i in range(shape[0]) for j in range(shape[1]))
     meaning = f"{shape[0]} x {shape[1]}, {r}_D_{p.name}^T {r}_D_{q.name}"
-    return Output(f"H_{p.name}_{q.name}", meaning, places, len(places), shape=shape)
+    return Output(block_name(p.name, q.name), meaning, places, len(places), shape=shape)
 
 
 def _formulas(kernel: Kernel, r: str, weighting: Weighting | None) -> tuple[str, ...]:
@@ -131,6 +132,6 @@ def _formulas(kernel: Kernel, r: str, weighting: Weighting | None) -> tuple[str,
     cost = "rho(s) / 2" if weighting and weighting.loss else f"|{r}|^2 / 2"
     return (
         f"cost = {cost}",
-        *(f"g_{x} = {r}_D_{x}^T {r}" for x in names),
-        *(f"H_{x}_{y} = {r}_D_{x}^T {r}_D_{y}" for x, y in combinations_with_replacement(names, 2)),
+        *(f"{gradient_name(x)} = {r}_D_{x}^T {r}" for x in names),
+        *(f"{block_name(x, y)} = {r}_D_{x}^T {r}_D_{y}" for x, y in combinations_with_replacement(names, 2)),
     )

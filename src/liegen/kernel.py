@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from liegen.errors import Site
+from liegen.names import jacobian_name
 from liegen.program import Program
 
 
@@ -115,7 +116,7 @@ class Kernel:
 
     def jacobian_name(self, output: Output, variable: Argument) -> str:
         """``res_D_x``."""
-        return f"{output.name}_D_{variable.name}"
+        return jacobian_name(output.name, variable.name)
 
 
 def _nested(numbers: tuple[float, ...], shape: tuple[int, ...]) -> tuple[object, ...]:

@@ -8,6 +8,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
+from liegen.names import block_name, gradient_name
 from liegen.verify.draws import Sample
 from liegen.verify.expected import Block, expect
 
@@ -41,9 +42,9 @@ def _terms(task: Task, blocks: Mapping[str, Block]) -> dict[str, Block]:
         for p in task.function.graph.variables
     }
     found = {"cost": 0.5 * (r * r).sum(axis=2, keepdims=True)}
-    found |= {f"g_{name}": np.einsum("bsij,bsi->bsj", block, r) for name, block in J.items()}
+    found |= {gradient_name(name): np.einsum("bsij,bsi->bsj", block, r) for name, block in J.items()}
     found |= {
-        f"H_{a}_{b}": np.einsum("bsij,bsik->bsjk", J[a], J[b]).reshape(*r.shape[:2], -1)
+        block_name(a, b): np.einsum("bsij,bsik->bsjk", J[a], J[b]).reshape(*r.shape[:2], -1)
         for a, b in combinations_with_replacement(J, 2)
     }
     return {name: replace(residual, name=name, expected=value) for name, value in found.items()}

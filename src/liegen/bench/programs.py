@@ -11,6 +11,7 @@ from typing import Any
 
 from liegen.algebra import Algebra
 from liegen.emit.templates import lay_out
+from liegen.names import block_name, gradient_name
 from liegen.program import Port
 
 from .variant import Task, offsets
@@ -43,8 +44,8 @@ def finished(task: Task, derived: Rows, matrix: Callable[[Sequence[Sequence[Any]
     ((output, _),) = task.function.graph.outputs
     r = matrix(derived[output])
     J = {p.name: matrix(derived[f"{output}_D_{p.name}"]) for p in task.function.graph.variables}
-    found = {"cost": r.T * r / 2, **{f"g_{name}": J[name].T * r for name in J}}
-    found |= {f"H_{a}_{b}": J[a].T * J[b] for a, b in combinations_with_replacement(J, 2)}
+    found = {"cost": r.T * r / 2, **{gradient_name(name): J[name].T * r for name in J}}
+    found |= {block_name(a, b): J[a].T * J[b] for a, b in combinations_with_replacement(J, 2)}
     return {
         name: [[block[i, j] for j in range(block.shape[1])] for i in range(block.shape[0])]
         for name, block in found.items()

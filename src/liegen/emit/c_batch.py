@@ -8,18 +8,11 @@ from textwrap import wrap
 
 from liegen.kernel import Kernel
 
-from .c_block import SYNTAX, Block, Names, names_of, printed_blocks, turned_outputs
+from .c_block import Block, Names, names_of, printed_blocks, turned_outputs
 from .header import closing
 from .precision import DOUBLE, SINGLE, Precision, precisions
-from .target import Options, words
+from .target import Options
 
-#: What the source of a batch refers to, beside variables that are named as nothing of the kernel is.
-BATCH_NAMES = words("""
-    LANES LANES_TRUE LANES_FALSE lanes lanes_mask lanes_of lanes_sincos lanes_blank lanes_status lanes_streams
-    lanes_finish lanes_pen lanes_lift LANES_ROOM LANES_SHARED LANES_PARALLEL LANES_WHOLE
-    LANES_APART LANES_FETCH LANES_IN_PLACE LANES_LINE block_ahead block_value block_jacobians block_value_cm
-    block_jacobians_cm ptrdiff_t uint8_t
-""").union(SYNTAX.calls.values())
 #: Longest call, without the indentation of the loop.
 _WIDTH = 92
 

@@ -9,7 +9,7 @@ from liegen.errors import DefinitionError
 from liegen.kernel import Kernel
 from liegen.program import Port, Program
 
-from .c_batch import BATCH_NAMES, batch_names, printed_batches
+from .c_batch import batch_names, printed_batches
 from .header import argument_text, jacobian_texts, kernel_header, storage_text
 from .lanes_text import DOUBLES, SINGLES
 from .precision import DOUBLE, SINGLE, Precision, precisions, statement
@@ -211,18 +211,6 @@ def printed(kernel: Kernel, options: Options) -> Mapping[str, object]:
     }
 
 
-C_KEYWORDS = words("""
-    auto break case char const continue default do double else enum extern float for goto if inline int long
-    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile
-    while asm typeof
-""")
-CPP_KEYWORDS = words("""
-    alignas alignof and and_eq bitand bitor bool catch char16_t char32_t char8_t class co_await co_return
-    co_yield compl concept const_cast consteval constexpr constinit decltype delete dynamic_cast explicit
-    export false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
-    public reinterpret_cast requires static_assert static_cast template this thread_local throw true try
-    typeid typename using virtual wchar_t xor xor_eq
-""")
 HEADERS = words("""
     assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg
     stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
@@ -232,11 +220,6 @@ TARGET = Target(
     name="c",
     printer=printed,
     public=symbols,
-    keywords={"C": C_KEYWORDS, "C++": CPP_KEYWORDS},
-    # "linux" and "unix" are macros of compilers there.
-    reserved=words("status NULL NAN INFINITY linux unix sincos").union(
-        SYNTAX.calls.values(), _syntax(SINGLE, "").calls.values(), BATCH_NAMES
-    ),
     files=HEADERS,
     factor_sheets=(
         Sheet("c/factor.h.j2", "c/{factor}.h"),

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from liegen.errors import DefinitionError
 from liegen.kernel import Kernel
+from liegen.names import (
+    PACKAGE_SYMBOLS,
+    check_arguments,
+    check_factor_name,
+    check_outputs,
+    complaint,
+    macro,
+    refuse,
+    shown,
+    taken,
+)
 
 from .targets import TARGETS
 
-#: Names that generated code, or whoever imports it, gives a meaning of its own.
-RESERVED = frozenset({"res", "out", "np"}).union(*(target.reserved for target in TARGETS))
-#: How the output of a factor, and the single output of a function, is called: reserved for just that.
-UNNAMED = frozenset({"res", "out"})
 FILES = frozenset[str]().union(*(target.files for target in TARGETS))
-#: A field of a named tuple must not hide one of its methods.
-TUPLE_METHODS = frozenset({"count", "index"})
-
-_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_TEMPORARY = re.compile(r"t[0-9]+")
 
 
 def check_names(kernels: Sequence[Kernel], package: str) -> None:
@@ -28,86 +29,59 @@ def check_names(kernels: Sequence[Kernel], package: str) -> None:
     _check_package(package)
     for kernel in kernels:
         _check_kernel(kernel)
+        _check_symbols(kernel, package)
     _check_together(kernels, package)
 
 
-def _complaint(name: str) -> str:
-    """Why a name cannot be used anywhere, or nothing."""
-    if not _IDENTIFIER.fullmatch(name):
-        return "is no C identifier (letters, digits and underscores, a letter first)"
-    if "__" in name:
-        return "holds a double underscore, which C++ keeps for itself"
-    languages = [language for t in TARGETS for language, known in t.keywords.items() if name in known]
-    return f"is a {languages[0]} keyword" if languages else ""
-
-
-def _reserved(name: str) -> str:
-    if name in RESERVED:
-        return "is reserved for the generated code"
-    return "is the name of a temporary in the generated code" if _TEMPORARY.fullmatch(name) else ""
-
-
-def _refuse(subject: str, name: str, complaint: str) -> None:
-    if complaint:
-        raise DefinitionError(f"{subject} {complaint}; rename it, for example to {_proposal(name)!r}")
-
-
-def _proposal(name: str) -> str:
-    stem = re.sub(r"_D_|[^A-Za-z0-9]+", "_", name).strip("_")
-    stem = stem if stem[:1].isalpha() else f"v_{stem}".rstrip("_")
-    return f"{stem}_1" if stem == name or _complaint(stem) or _reserved(stem) else stem
-
-
 def _check_package(package: str) -> None:
-    complaint = _complaint(package)
-    if not complaint and package == "c":
-        complaint = "is the name of the folder of the C code"
-    if not complaint and package in FILES:
-        complaint = "would make a header that hides one of C's own"
-    if not complaint and package in {"liegen", "numpy", *sys.stdlib_module_names}:
-        complaint = "would hide the Python module of that name"
-    _refuse(f"package name {package!r}", package, complaint)
+    why = complaint(package)
+    if not why and package == "c":
+        why = "is the name of the folder of the C code"
+    if not why and package in FILES:
+        why = "would make a header that hides one of C's own"
+    if not why and package in {"liegen", "numpy", *sys.stdlib_module_names}:
+        why = "would hide the Python module of that name"
+    refuse(f"package name {shown(package)}", package, why)
 
 
 def _check_kernel(kernel: Kernel) -> None:
-    where = f"{kernel.name} ({kernel.site})"
-    complaint = _complaint(kernel.name) or _reserved(kernel.name)
-    if not complaint and kernel.name in FILES:
-        complaint = "would make a file that hides one of C's headers or of the package's modules"
-    _refuse(f"factor {kernel.name!r} ({kernel.site}): its name", kernel.name, complaint)
-    outputs = [o.name for o in kernel.outputs]
-    called = _public(kernel)
-    seen: set[str] = set()
+    where, site = f"{kernel.name} ({kernel.site})", str(kernel.site)
+    check_factor_name(kernel.name, site)
+    why = "would make a file that hides one of C's headers or of the package's modules"
+    refuse(f"factor {kernel.name!r} ({site}): its name", kernel.name, why if kernel.name in FILES else "")
+    outputs, called = [o.name for o in kernel.outputs], _public(kernel)
+    check_outputs(where, outputs)
+    check_arguments(where, [a.name for a in kernel.arguments], outputs)
     for name in (a.name for a in kernel.arguments):
-        complaint = _complaint(name) or _reserved(name) or _clash(name, seen, outputs)
-        if not complaint and name in called:
-            complaint = "is also the name of a generated function"
-        _refuse(f"{where}: argument {name!r}", name, complaint)
-        seen.add(name)
-    seen = set()
-    for name in outputs:
-        complaint = _complaint(name) or ("" if name in UNNAMED else _reserved(name)) or _clash(name, seen, ())
-        if not complaint and name in TUPLE_METHODS:
-            complaint = "is a method of every named tuple"
-        _refuse(f"{where}: output {name!r}", name, complaint)
-        seen.add(name)
+        why = "is also the name of a generated function" if name in called else ""
+        refuse(f"{where}: argument {name!r}", name, why)
+
+
+def _check_symbols(kernel: Kernel, package: str) -> None:
+    """The names in C with the package before them: not those of C's library, nor of the package itself."""
+    for name in _public(kernel):
+        symbol, upper = f"{package}_{name}", f"{package}_{name}_H".upper()
+        own = name in PACKAGE_SYMBOLS or upper.removeprefix(f"{package}_".upper()) in PACKAGE_SYMBOLS
+        if own or symbol in taken()["declarations"] or macro(symbol):
+            whose = "the package itself" if own else "C's library"
+            raise DefinitionError(
+                f"factor {kernel.name!r} ({kernel.site}) in the package {package!r} would make {symbol} in "
+                f"C, which is a name of {whose}; rename one of them"
+            )
+    taken_by = {f"{package}_{name}" for name in (*PACKAGE_SYMBOLS, *_public(kernel))}
+    taken_by.add(f"{package}_RESTRICT".upper())
+    ports = [port.name for port in kernel.jacobians.outputs]
+    for name in (*(a.name for a in kernel.arguments), *ports):
+        if name in taken_by:
+            raise DefinitionError(
+                f"{kernel.name} ({kernel.site}): {name!r} is also a name in the C of the package "
+                f"{package!r}; rename it, or the package"
+            )
 
 
 def _public(kernel: Kernel) -> list[str]:
     """What the code of a kernel defines in any language."""
     return sorted({name for target in TARGETS for name in target.public(kernel)})
-
-
-def _clash(name: str, seen: Iterable[str], outputs: Iterable[str]) -> str:
-    if name in seen:
-        return "occurs twice"
-    if name in outputs:
-        return "is also the name of an output"
-    return (
-        "looks like the name of a Jacobian ('_D_' stands between an output and a variable)"
-        if "_D_" in name
-        else ""
-    )
 
 
 def _check_together(kernels: Sequence[Kernel], package: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -183,8 +182,6 @@ TARGET = Target(
     name="numpy",
     printer=printed,
     public=public_names,
-    keywords={"Python": frozenset(keyword.kwlist)},
-    reserved=words("np npt NamedTuple Array annotations evaluate flat values shapes invalid"),
     files=words("support"),
     factor_sheets=(Sheet("numpy/factor.py.j2", "{package}/_{factor}.py"),),
     package_sheets=(

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from liegen.kernel import Kernel
+from liegen.names import macro
 
 
 @dataclass(frozen=True)
@@ -39,16 +40,14 @@ class Target:
     """A language: its printer (from a kernel to the names that a template lays out) and its files.
 
     ``public`` lists what the code of a kernel defines for its users, without a prefix that all share.
-    ``keywords`` maps a language to its keywords; ``reserved`` are names that the templates use, ``files``
-    names whose file would hide another one. No name of a factor may be one of them. ``package_names``
-    are what the package's templates lay out beside the factors.
+    ``files`` are names whose file would hide another one; no factor may be called so. ``package_names``
+    are what the package's templates lay out beside the factors. What a language and the templates keep for
+    themselves is listed in ``liegen/names/keywords.py``.
     """
 
     name: str
     printer: Callable[[Kernel, Options], Mapping[str, object]]
     public: Callable[[Kernel], tuple[str, ...]]
-    keywords: Mapping[str, frozenset[str]]
-    reserved: frozenset[str]
     files: frozenset[str]
     factor_sheets: tuple[Sheet, ...]
     package_sheets: tuple[Sheet, ...]
@@ -63,14 +62,14 @@ def words(text: str) -> frozenset[str]:
 def scalar_names(kernel: Kernel) -> tuple[str, ...]:
     """A name for every stored scalar, in order: ``x_qx`` of an SE3 ``x``, ``z_0`` of a scalar ``z``.
 
-    A name that the kernel already uses gets underscores appended.
+    A name that the kernel already uses, or a header of C, gets underscores appended.
     """
     used = {*(a.name for a in kernel.arguments), *(port.name for port in kernel.jacobians.outputs)}
     names: list[str] = []
     for argument in kernel.arguments:
         for scalar in argument.storage if argument.size > 1 else ("0",):
-            name = f"{argument.name}_{scalar}"
-            while name in used:
+            name = f"{argument.name.rstrip('_')}_{scalar}"
+            while name in used or macro(name):
                 name += "_"
             used.add(name)
             names.append(name)

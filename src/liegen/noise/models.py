@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.algebra.linear import Matrix, Vector, diagonal
+from liegen.names import SQRT_INFO
 
 #: The keyword that every model adds.
-KEYWORD = "sqrt_info"
+KEYWORD = SQRT_INFO
 
 
 @dataclass(frozen=True)

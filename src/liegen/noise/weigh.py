@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import prod
 from typing import TypeVar
 
@@ -154,17 +154,34 @@ class Weighting:
     noise: Noise | None
     loss: Loss | None
     mode: Mode
+    #: What parameters of the loss are called where the factor has an argument of their name.
+    renamed: tuple[tuple[str, str], ...] = ()
+
+    def beside(self, arguments: Collection[str]) -> Weighting:
+        """The same, with ``loss_k`` for ``k`` where that is an argument of the factor."""
+        made: list[tuple[str, str]] = []
+        for name in self.loss.parameters if self.loss else ():
+            free = name
+            while free in arguments:
+                free = f"loss_{free}"
+            made += [(name, free)] if free != name else []
+        return replace(self, renamed=tuple(made))
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """What the loss's parameters are called, in order."""
+        return tuple(dict(self.renamed).get(n, n) for n in (self.loss.parameters if self.loss else ()))
 
     def weights(self, m: int) -> tuple[Weight, ...]:
         """The keywords that it adds to a factor with m residuals."""
         noise, loss = self.noise, self.loss
         own = (Weight(KEYWORD, noise.shape(m), noise.kind(m), noise.meaning),) if noise else ()
-        names = loss.parameters if loss else ()
-        return own + tuple(Weight(n, (1,), "R1", loss.meaning(n)) for n in names if loss)
+        names = zip(loss.parameters, self.parameter_names, strict=True) if loss else ()
+        return own + tuple(Weight(called, (1,), "R1", loss.meaning(n)) for n, called in names if loss)
 
     def parameters(self, given: Mapping[str, Vector]) -> tuple[Scalar, ...]:
         """The loss's parameters in order."""
-        return tuple(given[name][0] for name in (self.loss.parameters if self.loss else ()))
+        return tuple(given[name][0] for name in self.parameter_names)
 
     def weighted(self, given: Mapping[str, Vector], r: Vector) -> Weighted:
         """The residual, whitened and weighed. ``given`` holds the keywords' numbers."""
@@ -205,6 +222,7 @@ class Weighting:
         return (
             *found,
             f"loss: {self.loss.name}, rho(s) = {self.loss.formula}; the cost is rho(s) / 2",
+            *(f"{parameter} of the loss is called {called}" for parameter, called in self.renamed),
             *weights[1 if self.noise else 0 :],
             f"mode: {self.mode.name}; res^T res_D_{variables[0]} is the exact gradient of the cost",
             f"u = {u}, s = |u|^2, {where}",
@@ -232,8 +250,9 @@ class Weighting:
         values = {KEYWORD: self.noise.draw(generator, m).ravel()} if self.noise else {}
         if self.loss:
             row = self.loss.shapes[int(generator.integers(len(self.loss.shapes)))]
-            values |= {n: np.array([x]) for n, x in zip(self.loss.shape, row, strict=True)}
-            values[self.loss.scale] = generator.uniform(*_SCALES, 1)
+            *shape, width = self.parameter_names
+            values |= {n: np.array([x]) for n, x in zip(shape, row, strict=True)}
+            values[width] = generator.uniform(*_SCALES, 1)
         return values
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.kernel import Kernel
+from liegen.names import block_name, gradient_name
 from liegen.noise import Weighting, cost_graph
 
 from . import reference
@@ -102,9 +103,9 @@ def _names(kernel: Kernel) -> tuple[str, list[str]]:
 def _ratio(kernel: Kernel, factor: Factor, found: Results) -> Array:
     """(samples,): the largest error of a term over what is allowed; NaN where a result is none."""
     residual, variables = _names(kernel)
-    pairs = [(f"g_{x}", f"{residual}_D_{x}", residual) for x in variables]
+    pairs = [(gradient_name(x), f"{residual}_D_{x}", residual) for x in variables]
     pairs += [
-        (f"H_{x}_{y}", f"{residual}_D_{x}", f"{residual}_D_{y}")
+        (block_name(x, y), f"{residual}_D_{x}", f"{residual}_D_{y}")
         for x, y in combinations_with_replacement(variables, 2)
     ]
     cost = np.abs(found["cost"][:, 0] - factor.cost)
