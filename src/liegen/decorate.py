@@ -11,6 +11,7 @@ from liegen.arguments import callable_of, name_of
 from liegen.define import Function, Sampler
 from liegen.errors import DefinitionError
 from liegen.manifolds import Manifold, Vector
+from liegen.manifolds.given import spoken
 from liegen.manifolds.node import here
 from liegen.noise import Weighting
 from liegen.noise import weighting as read_weighting
@@ -146,6 +147,9 @@ def _decorated(
     what = f"{here()}: {function.__name__}"
     if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
         raise DefinitionError(f"{what}: a factor returns its value, without async and yield; write return")
+    for option, given in (("frames", frames), ("normalise", normalise)):
+        if not isinstance(given, bool):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise DefinitionError(f"{what}: {option}= is True or False, got {spoken(given)}")
     doc = inspect.getdoc(function) or ""
     made: Function[..., Any] = Function(
         function,

@@ -17,7 +17,7 @@ class Choices:
         hints, kind = get_type_hints(type(self)), type(self).__name__
         for choice in fields(self):
             value, possible = getattr(self, choice.name), get_args(hints[choice.name])
-            if value not in possible:
+            if not isinstance(value, str | bool | int) or value not in possible:
                 raise DefinitionError(
                     f"{here()}: {kind}({choice.name}={value!r}): {choice.name} is one of "
                     f"{', '.join(map(repr, possible))}"

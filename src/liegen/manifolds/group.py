@@ -78,6 +78,18 @@ class Manifold(Value):
 
     __slots__ = ()
 
+    if not TYPE_CHECKING:  # classes that are made of parts have their own
+
+        def __new__(cls, *_: object, **__: object) -> Any:
+            """Raises DefinitionError with the ways to make an element."""
+            ways = [w for w in ("identity()", "exp(d)", "direction(v)") if hasattr(cls, w.partition("(")[0])]
+            stored = shown_storage(cls.form.storage) if hasattr(cls, "form") else "..."
+            more = "".join(f", {cls.__name__}.{way}" for way in ways)
+            raise DefinitionError(
+                f"{here()}: {cls.__name__} is not made of parts; write "
+                f"{cls.__name__}.from_storage(array) of ({stored}){more}"
+            )
+
     def retract(self, d: VectorLike) -> Self:
         """The point that the tangent vector ``d`` of shape (..., dim) at self leads to."""
         form = self.form

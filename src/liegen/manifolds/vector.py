@@ -14,7 +14,7 @@ from liegen.algebra import call
 from liegen.errors import DefinitionError
 
 from .condition import Condition
-from .given import dimension, real_numbers
+from .given import LARGEST, dimension, real_numbers
 from .group import Group
 from .node import Operation, Value, apply, called, formula, here, user_frame
 from .rn_form import RForm, direction_or_zero, length
@@ -93,6 +93,8 @@ class Vector(Group):
         if not isinstance(exponent, int) or exponent < 0:  # pyright: ignore[reportUnnecessaryIsInstance]
             cure = for_operator_here(Vector, user_frame()) or "exp(y * log(x)) for x ** y"
             raise DefinitionError(f"{here()}: ** takes a whole number that is not negative; write {cure}")
+        if exponent > LARGEST:
+            raise DefinitionError(f"{here()}: ** takes a whole number up to {LARGEST}; write exp(y * log(x))")
         if exponent == 0:
             return self * 0 + 1
         half = self ** (exponent // 2) if exponent > 1 else None
@@ -316,7 +318,7 @@ def _constant_product(matrix: Any, v: Vector) -> Vector:
     if isinstance(matrix, Value):
         cure = for_operator_here(type(matrix), user_frame()) or "dot(x, y) for x @ y"
         raise DefinitionError(f"{here()}: @ does not take {called(matrix)} and {called(v)}; write {cure}")
-    numbers = np.asarray(matrix, dtype=np.float64)
+    numbers = real_numbers(matrix, f"{here()}: matrix @ {called(v)} needs a matrix with {len(v)} columns")
     if numbers.ndim != 2 or numbers.shape[1] != len(v):
         raise DefinitionError(
             f"{here()}: a matrix of shape {numbers.shape} cannot multiply {called(v)}; "

@@ -44,7 +44,7 @@ def frames(*names: str, point: bool | None = None) -> Frames:
     A vector or direction has one frame; ``point=True`` makes a vector a point, ``point=False`` a free vector.
     ``frames()`` declares that the parameter has none, whatever its name.
     """
-    if not all(names):
+    if not all(isinstance(name, str) and name for name in names):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise DefinitionError(f'{here()}: a frame needs a name: frames("W", "B"), not an empty string')
     return Frames(names, point)
 

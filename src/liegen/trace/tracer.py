@@ -9,7 +9,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MethodType
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Never, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -77,8 +77,10 @@ class Outputs:
         return self.values[name]
 
 
-def outputs(**values: Manifold) -> Outputs:
+def outputs(*unnamed: Never, **values: Manifold) -> Outputs:
     """Name what a ``@function`` returns: ``outputs(R=..., p=...)``."""
+    if unnamed or not values:
+        raise DefinitionError(f"{here()}: outputs needs a name for each value; write outputs(R=..., p=...)")
     for name, value in values.items():
         if not isinstance(value, Manifold):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise DefinitionError(f"{here()}: output {name!r} is a {type(value).__name__}, not a typed value")
