@@ -2,7 +2,10 @@
 
 import errno
 import os
+import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
 
 import pytest
@@ -102,6 +105,24 @@ def test_verify_with_a_bad_compiler(kind, top, monkeypatch):
     assert done.stderr.startswith("Error: ")
     assert done.stderr.count("\n") == 1
     assert "\033" not in done.stderr
+    assert [p.name for p in top.iterdir()] == ["mycc"]
+
+
+@needs_compiler
+def test_the_next_run_removes_what_a_killed_one_left(top):
+    script = top / "mycc"
+    script.write_text("#!/bin/sh\nexec sleep 5\n")
+    script.chmod(0o755)
+    command = [sys.executable, "-m", "liegen", "verify", "-f", "prior_r2"]
+    run = subprocess.Popen(command, env={**os.environ, "TMPDIR": str(top), "CC": str(script)})
+    until = time.monotonic() + 60
+    while not list(top.glob("liegen-verify-*/c/*.c")) and time.monotonic() < until:
+        time.sleep(0.05)
+    run.kill()
+    run.wait()
+    assert len(list(top.glob("liegen-verify-*"))) == 1
+    done = CliRunner().invoke(app, ["verify", "-f", "prior_r2", "--samples", "2"])
+    assert done.exit_code == 0
     assert [p.name for p in top.iterdir()] == ["mycc"]
 
 
