@@ -146,6 +146,12 @@ def _with_vectors(kind: type, call: ast.Call, written: Written) -> str:
     return f"{ast.unparse(call.func)}({', '.join(arguments)})"
 
 
+def for_made(kind: type, frame: FrameType) -> str:
+    """What to write for a call of a class whose elements are not made of parts, such as ``SO3(v)``."""
+    written = written_in(frame)
+    return with_imports(made(kind, written), written.names) if written else ""
+
+
 def for_operator_here(kind: type, frame: FrameType, right: type | None = None) -> str:
     """What to write for the operator that a frame is running, on operands of these classes."""
     written = written_in(frame)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from liegen.advice import for_operator_here
+from liegen.advice import for_made, for_operator_here
 from liegen.algebra import Scalar
 from liegen.algebra.linear import Matrix
 from liegen.errors import DefinitionError
@@ -82,13 +82,9 @@ class Manifold(Value):
 
         def __new__(cls, *_: object, **__: object) -> Any:
             """Raises DefinitionError with the ways to make an element."""
-            ways = [w for w in ("identity()", "exp(d)", "direction(v)") if hasattr(cls, w.partition("(")[0])]
             stored = shown_storage(cls.form.storage) if hasattr(cls, "form") else "..."
-            more = "".join(f", {cls.__name__}.{way}" for way in ways)
-            raise DefinitionError(
-                f"{here()}: {cls.__name__} is not made of parts; write "
-                f"{cls.__name__}.from_storage(array) of ({stored}){more}"
-            )
+            cure = for_made(cls, user_frame()) or f"{cls.__name__}.from_storage([{stored}])"
+            raise DefinitionError(f"{here()}: {cls.__name__} is not made of parts; write {cure}")
 
     def retract(self, d: VectorLike) -> Self:
         """The point that the tangent vector ``d`` of shape (..., dim) at self leads to."""
