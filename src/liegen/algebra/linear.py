@@ -105,6 +105,11 @@ def eye(n: int) -> Matrix:
     return tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
 
 
+def selection(n: int, rows: Sequence[int]) -> Matrix:
+    """These rows of the identity of n, as structure; no other one is made."""
+    return tuple((0,) * k + (1,) + (0,) * (n - k - 1) for k in rows)
+
+
 def zeros(rows: int, columns: int) -> Matrix:
     """Zero, as structure."""
     return ((0,) * columns,) * rows

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import accumulate
 from typing import Any
 
 from liegen.algebra import Scalar, call
-from liegen.algebra.linear import Chain, Matrix, column, diagonal, eye, matvec
+from liegen.algebra.linear import Chain, Matrix, column, diagonal, matvec, selection, transpose
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.errors import DefinitionError
 
@@ -94,13 +95,12 @@ def spoken_as(v: Value, of_vector: str) -> str:
 
 def take(cls: type[Value], n: int, positions: Sequence[int], *, single: bool) -> Operation:
     """Some of n entries; ``single`` is shown as an index."""
-    rows = eye(n)
     text = str(positions[0]) if single else _slice_text(positions)
     return Operation(
         "take",
         cls,
         lambda a: tuple(a[k] for k in positions),
-        lambda _, _a: ((tuple(rows[k] for k in positions),),),
+        lambda _, _a: ((selection(n, positions),),),
         f"{{0}}[{text}]",
         tuple(positions),
     )
@@ -127,14 +127,15 @@ def _plain(x: float) -> float | int:
 
 def join(cls: type[Value], sizes: Sequence[int]) -> Operation:
     """Vectors of the given sizes one after the other."""
-    starts = [sum(sizes[:k]) for k in range(len(sizes))]
-    columns = eye(sum(sizes))
+    n = sum(sizes)
+    starts = list(accumulate(sizes[:-1], initial=0))
 
     def value(*coords: Coordinates) -> Coordinates:
         return tuple(x for part in coords for x in part)
 
     def blocks(*_: Coordinates) -> Blocks:
-        return tuple((tuple(row[s : s + n] for row in columns),) for s, n in zip(starts, sizes, strict=True))
+        places = [range(start, start + size) for start, size in zip(starts, sizes, strict=True)]
+        return tuple((transpose(selection(n, place)),) for place in places)
 
     show = "stack(" + ", ".join(f"{{{k}}}" for k in range(len(sizes))) + ")"
     return Operation("stack", cls, value, blocks, show)
