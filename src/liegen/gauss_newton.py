@@ -22,6 +22,8 @@ from liegen.trace import Graph, Parameter
 
 #: Programs that are larger than the smallest by this share, by a first count, do not get all passes.
 MARGIN = 0.02
+#: Entries of blocks that the search for a frontier may make, structure included: a second or so.
+BUDGET = 400_000
 
 
 @uncollected()
@@ -78,7 +80,7 @@ def _ranked(
     found: dict[bytes, tuple[int, Ladder, int]] = {}
     for steps in ladders:
         own = steps.holding([next(left) for _ in steps.blocks])
-        for frontier in steps.frontiers:
+        for frontier in steps.worth_trying(BUDGET):
             nodes = ledger.taken(partial(_multiplied, cost, weighted, own, frontier))
             if nodes is not None:
                 found[nodes] = (ledger.count(nodes), steps, frontier)

@@ -65,6 +65,34 @@ class Ladder:
 
         return (*[k for k, vertex in enumerate(self.order) if not same(vertex)], len(self.order))
 
+    def entries(self, frontier: int) -> int:
+        """About how many entries of blocks are made, structure included, where the terms are formed there."""
+        alive = dict(self.sinks)
+        rows, made = sum(self.sinks.values()), 0
+        for k, vertex in enumerate(self.order):
+            if k == frontier:
+                made += sum(alive.values()) ** 2
+            own = alive.pop(vertex, 0)
+            for source, B in self.into[vertex].items():
+                width = len(B[0])
+                made += width * (rows if k < frontier else own + width + sum(alive.values()))
+                alive[source] = width
+        return made + (sum(alive.values()) ** 2 if frontier == len(self.order) else 0)
+
+    def worth_trying(self, budget: int) -> tuple[int, ...]:
+        """The frontiers, in order; of a long ladder the last ones, as many as take ``budget`` entries.
+
+        The very last one is the Jacobian of all variables.
+        """
+        *others, last = self.frontiers
+        kept, left = [last], budget
+        for frontier in reversed(others):
+            left -= self.entries(frontier)
+            if left < 0:
+                break
+            kept.append(frontier)
+        return tuple(reversed(kept))
+
     @property
     def blocks(self) -> tuple[Matrix, ...]:
         """The matrices of ``into``, in order."""
