@@ -16,6 +16,7 @@ from .contract import contracted
 from .elements import elements
 from .eliminate import Strategy, accumulate, eliminate
 from .local import local_blocks, symbols
+from .rounded import near_zero, size_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +97,9 @@ def linearised(graph: Graph, values: Expressions, *, through_storage: bool = Fal
         wanted = [id(n) in active for n in node.operands]
         if id(node) not in active or not any(wanted) or not node.manifold.form.dim:
             continue  # a condition has no derivative
+        size = size_of(node, values.scalars) if node.operation.near_zero else None
         blocks = local_blocks(
-            node.operation,
+            node.operation if size is None else near_zero(node.operation, size),
             values.scalars[id(node)],
             [values.scalars[id(n)] for n in node.operands],
             [n.manifold for n in node.operands],

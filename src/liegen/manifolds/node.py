@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import sys
 import sysconfig
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -40,7 +40,8 @@ class Operation:
     ``value(*coords)`` computes the result's coordinates on scalars of any backend.
     ``blocks(result, *coords)`` gives the tangent-space Jacobian by each operand; None stands for automatic
     differentiation through the storage. ``show`` is a format string for the operands. ``parameters`` are the
-    constants that it carries.
+    constants that it carries. ``near_zero(size)`` are the blocks where the operand is a difference that is
+    known to the rounding of numbers of that size only; None where that makes no difference.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Operation:
     blocks: Rule | None
     show: str
     parameters: tuple[Any, ...] = ()
+    near_zero: Callable[[Scalar], Rule] | None = None
 
 
 @dataclass(frozen=True, eq=False)

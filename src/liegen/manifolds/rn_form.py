@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from liegen.algebra import Scalar, fabs, lt, select, sqrt
+from liegen.algebra import Scalar, fabs, le, lt, select, sqrt
 from liegen.algebra.linear import Chain, Matrix, Vector, dot, eye, negate, scale
 
 from .form import Coords, GroupForm, Source
 
 _TINY, _HUGE, _SHIFT = 2.0**-900, 2.0**900, 2.0**600
+_PART = 2.0**-5
 
 
 class RForm(GroupForm):
@@ -94,3 +95,16 @@ def direction_or_zero(v: Coords) -> Vector:
         return (select(lt(v[0], 0), -1.0, select(lt(0, v[0]), 1.0, 0.0)),)
     w, n, _ = scaled_length(v)
     return scale(1 / select(lt(0, n), n, 1.0), w)  # n is 0 only where w is
+
+
+def direction_or_rounding(v: Coords, size: Scalar) -> Vector:
+    """v / |v|, and 0 where v is but the rounding of differences between numbers of this ``size``.
+
+    That is where size + |v|/32 rounds to size, in whatever precision: below 32 units of the rounding.
+    """
+    if len(v) == 1:
+        near = le(size + fabs(v[0]) * _PART, size)
+        return (select(near, 0.0, select(lt(v[0], 0), -1.0, v[0] / fabs(select(near, 1.0, v[0])))),)
+    w, n, back = scaled_length(v)
+    near = le(size + n * back * _PART, size)
+    return scale(select(near, 0.0, 1 / select(near, 1.0, n)), w)

@@ -16,8 +16,8 @@ from liegen.errors import DefinitionError
 from .condition import Condition
 from .given import LARGEST, dimension, real_numbers
 from .group import Group
-from .node import Operation, Value, apply, called, formula, here, user_frame
-from .rn_form import RForm, direction_or_zero, length
+from .node import Value, apply, called, formula, here, user_frame
+from .rn_form import RForm
 from .vector_operations import (
     ARITHMETIC,
     Elementwise,
@@ -26,6 +26,7 @@ from .vector_operations import (
     constant_product,
     elementwise,
     join,
+    length_of,
     positions,
     spoken_as,
     take,
@@ -341,8 +342,5 @@ def stack(*parts: VectorLike) -> Vector:
 
 
 def norm(v: VectorLike) -> R1:
-    """Euclidean length; at 0 its value and its gradient are 0. No under- or overflow."""
-    operation = Operation(
-        "norm", R1, lambda a: (length(a),), lambda _, a: (((direction_or_zero(a),),),), "norm({0})"
-    )
-    return apply(operation, R1, as_vector(v, where="norm"))
+    """Euclidean length; at 0, and at a difference that is but rounding, its gradient is 0. No overflow."""
+    return apply(length_of(R1), R1, as_vector(v, where="norm"))

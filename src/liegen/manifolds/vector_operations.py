@@ -11,9 +11,10 @@ from liegen.algebra.linear import Chain, Matrix, column, diagonal, matvec, selec
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.errors import DefinitionError
 
-from .form import Blocks
+from .form import Blocks, Rule
 from .given import spoken
 from .node import Operation, Value, called, formula, here
+from .rn_form import direction_or_rounding, direction_or_zero, length
 
 #: An entry of the result from the operands' entries.
 Elementwise = Callable[[Any], Scalar] | Callable[[Any, Any], Scalar]
@@ -46,7 +47,13 @@ def elementwise(
         by_operand = ([s[k] for s in slopes] for k in range(len(coords)))
         return tuple(_block(d, len(c)) for c, d in zip(coords, by_operand, strict=True))
 
-    return Operation(name, cls, value, blocks if partials else None, show)
+    rounded = _absolute_near_zero if name == "abs" else None
+    return Operation(name, cls, value, blocks if partials else None, show, near_zero=rounded)
+
+
+def _absolute_near_zero(size: Scalar) -> Rule:
+    """The slope of ``abs`` is 0 where an entry is but rounding."""
+    return lambda _, a: ((diagonal([direction_or_rounding((x,), size)[0] for x in a]),),)
 
 
 def _block(slopes: Sequence[Any], size: int) -> Chain:
@@ -91,6 +98,18 @@ def spoken_as(v: Value, of_vector: str) -> str:
     if v.form.size > 1:
         return of_vector.format(formula(v, "p"))
     return formula(v) if v.traced else f"{float(v):g}"
+
+
+def length_of(cls: type[Value]) -> Operation:
+    """The length of a vector."""
+    return Operation(
+        "norm",
+        cls,
+        lambda a: (length(a),),
+        lambda _, a: (((direction_or_zero(a),),),),
+        "norm({0})",
+        near_zero=lambda size: lambda _, a: (((direction_or_rounding(a, size),),),),
+    )
 
 
 def take(cls: type[Value], n: int, positions: Sequence[int], *, single: bool) -> Operation:

@@ -41,7 +41,7 @@ def both_branches(graph: Graph, sample: Sample, slopes: Slopes | None = None) ->
 
 def _undecided(graph: Graph, sample: Sample, principal: Entries, other: Entries) -> bool:
     """Whether the principal logarithm of some nearby inputs is nearer to ``other``."""
-    for near in _nearby(graph, sample):
+    for near in nearby(graph, sample):
         for name, x in _outputs(graph, near, flip=False).items():
             apart = [float(np.abs(x - side[name]).max()) for side in (principal, other)]
             if apart[1] < apart[0]:
@@ -49,7 +49,7 @@ def _undecided(graph: Graph, sample: Sample, principal: Entries, other: Entries)
     return False
 
 
-def _nearby(graph: Graph, sample: Sample) -> Iterator[Values]:
+def nearby(graph: Graph, sample: Sample) -> Iterator[Values]:
     """The inputs with every number moved by 16 units in the last place (zeros of those of 1), up or down."""
     generator = generator_for(graph.name, sample.case, "nearby")
     for _ in range(16):
