@@ -330,3 +330,17 @@ def test_classes_of_other_libraries_are_told_in_annotations():
             return x
 
     assert liegen.factor is factor
+
+
+@pytest.mark.parametrize("group", [liegen.SO2, SO3, liegen.SE2, SE3, liegen.SE23, liegen.Gal3, liegen.Sim3])
+@pytest.mark.parametrize("size", [0.0, 800.0, 1e200, float("nan")])
+def test_numbers_without_a_result_give_no_warnings(group, size, recwarn):
+    """A warning would name a line of liegen's own."""
+    v = [size] * group.form.dim
+    x = group.exp(v)
+    for method in (x.matrix, x.adjoint, x.log, x.inverse):
+        method()
+    for jacobian in (group.Jr, group.Jl, group.Jr_inv, group.Jl_inv):
+        jacobian(v)
+    x.local(x.retract(v))
+    assert not recwarn.list

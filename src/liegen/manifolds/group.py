@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from .vector import Vector, VectorLike
 
 
+#: Numbers that overflow, or have no value, give inf or NaN; NumPy's warning would name a line of liegen.
+_QUIET = np.errstate(all="ignore")
+
+
 @cache
 def tangent_class(n: int) -> type[Vector]:
     """The class of vectors with n components (vectors are groups too: hence the late import)."""
@@ -148,30 +152,36 @@ class Group(Manifold):
         )
         return apply(operation, type(self), self, other)
 
+    @_QUIET
     def matrix(self) -> NDArray[Any]:
         """The element as a matrix of shape (..., n, n)."""
         return as_array(self.form.matrix(self.coords))
 
+    @_QUIET
     def adjoint(self) -> NDArray[Any]:
         """Ad with self exp(d) = exp(Ad d) self, of shape (..., dim, dim)."""
         return as_array(self.form.adjoint_matrix(self.coords))
 
     @classmethod
+    @_QUIET
     def Jr(cls, d: VectorLike) -> NDArray[Any]:
         """Right Jacobian of exp at d, of shape (..., dim, dim)."""
         return as_array(cls.form.Jr(as_tangent(d, cls.form, f"{cls.__name__}.Jr").coords))
 
     @classmethod
+    @_QUIET
     def Jl(cls, d: VectorLike) -> NDArray[Any]:
         """Left Jacobian of exp at d."""
         return as_array(cls.form.Jl(as_tangent(d, cls.form, f"{cls.__name__}.Jl").coords))
 
     @classmethod
+    @_QUIET
     def Jr_inv(cls, d: VectorLike) -> NDArray[Any]:
         """Inverse of the right Jacobian; singular where the rotation is a multiple of 2 pi, 0 excepted."""
         return as_array(cls.form.Jr_inv(as_tangent(d, cls.form, f"{cls.__name__}.Jr_inv").coords))
 
     @classmethod
+    @_QUIET
     def Jl_inv(cls, d: VectorLike) -> NDArray[Any]:
         """Inverse of the left Jacobian."""
         return as_array(cls.form.Jl_inv(as_tangent(d, cls.form, f"{cls.__name__}.Jl_inv").coords))

@@ -162,6 +162,7 @@ def propagate(J: ArrayLike, S: ArrayLike) -> Array:
     return through(jacobian, covariance(S, jacobian.shape[-1]))
 
 
+@np.errstate(all="ignore")  # what overflows is inf; a warning would name this line
 def through(J: Array, S: Array) -> Array:
     """J S J^T, exactly symmetric, of arrays that are checked."""
     moved = J @ S @ np.swapaxes(J, -1, -2)
