@@ -16,6 +16,7 @@ from numpy import ndarray
 from liegen.errors import DefinitionError
 from liegen.manifolds import Value
 
+from .arguments import problem, with_columns
 from .source import Parameter, Source
 
 #: Arrays in the order of the parameters in, an array or a tuple of arrays out, and ``out=``: as a gufunc.
@@ -50,8 +51,8 @@ class Call:
     """Callable on arrays (..., n) and on typed values; keyword-only arguments by name.
 
     ``out`` is an array, or a tuple of arrays where there are several results. Raises TypeError for missing or
-    unknown arguments, DefinitionError for a typed value of another manifold, and what NumPy raises for wrong
-    shapes and dtypes.
+    unknown arguments and for what is no real number, DefinitionError for a typed value of another manifold,
+    ValueError for another shape; each names the argument. A plain number is taken for a scalar.
 
     ``all_types`` and ``doubles`` make what evaluates it, at the first call that needs it: for any type of
     number, and where one of the arguments is no smaller one than float64.
@@ -100,10 +101,25 @@ class Call:
             if type(array) is not ndarray:
                 arrays, evaluate = self._plain(arrays), None
                 break
-        if evaluate is None or arrays[0].dtype is not _DOUBLE:
-            evaluate = self._fitting(arrays)
-        results = evaluate(*arrays) if out is None else evaluate(*arrays, out=out)
+        try:
+            if evaluate is None or arrays[0].dtype is not _DOUBLE:
+                evaluate = self._fitting(arrays)
+            results = evaluate(*arrays) if out is None else evaluate(*arrays, out=out)
+        except (TypeError, ValueError) as error:
+            results = self._again(error, arrays, out)
         return results if self.make is None else self.make(results)
+
+    def _again(self, error: Exception, arrays: Sequence[Any], out: Any) -> Any:
+        """The results with plain numbers for scalars, or the error with the name of the argument."""
+        columns = with_columns(self.parameters, arrays)
+        indexed = self.doubles is None  # it names the arguments itself, whose leading dimensions may differ
+        wrong = None if indexed else problem(self.name, self.parameters, columns)
+        if wrong is not None:
+            raise wrong from None
+        if all(new is old for new, old in zip(columns, arrays, strict=True)):
+            raise error
+        evaluate = self._fitting(columns)
+        return evaluate(*columns) if out is None else evaluate(*columns, out=out)
 
     @cached_property
     def evaluate(self) -> Evaluate:
