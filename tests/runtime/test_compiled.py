@@ -185,9 +185,9 @@ def test_numbers_of_other_types(compiled):
     for made in (k(R, p), k(np.array(R, dtype=np.int64), p), k(np.array(R) != 0, p)):
         assert made.dtype == np.float64
         assert made.tolist() == [1, 2, 3]
-    with pytest.raises(TypeError, match="argument R: .* of real numbers, got complex numbers"):
+    with pytest.raises(TypeError, match=r"argument R: .* of real numbers, got complex numbers"):
         k(np.array(R) * 1j, p)
-    with pytest.raises(TypeError, match="argument R: .* of real numbers, got text"):
+    with pytest.raises(TypeError, match=r"argument R: .* of real numbers, got text"):
         k(["a", "b", "c", "d"], p)
 
 
@@ -226,7 +226,7 @@ def test_wrong_shapes_name_function_and_argument(compiled):
         k(good, np.zeros((3, 7)), z=good)
     with pytest.raises(ValueError, match=r"between_se3: argument y: expected shape .*, got \(\)"):
         k(good, 1.0, z=good)
-    with pytest.raises(ValueError, match="between_se3: argument z: .* a list whose rows differ in length"):
+    with pytest.raises(ValueError, match=r"between_se3: argument z: .* a list whose rows differ in length"):
         k(good, good, z=[[1, 2], [3]])
     with pytest.raises(ValueError, match=r"[Oo]utput|broadcast"):
         k(good, good, z=good, out=np.empty((4, 5)))
