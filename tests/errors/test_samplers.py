@@ -88,6 +88,22 @@ def test_what_a_sampler_does_wrong_is_told(name, tmp_path):
         assert words in message
 
 
+@pytest.mark.parametrize(
+    "command", [["generate", "-o", "out"], ["verify", "--accuracy"], ["verify", "--gauss-newton"], ["bench"]]
+)
+@pytest.mark.parametrize("name", ["None", "exits at once"])
+def test_every_command_tells_it(name, command, tmp_path, monkeypatch):
+    body, says = GIVES[name]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "factors.py").write_text(HEAD.format(body=body, sampler="sample"))
+    done = CliRunner().invoke(app, [command[0], "factors.py", *command[1:]])
+    assert done.exit_code == 2, done.output
+    assert done.stderr.startswith("Error: factors.py:10: pull: ")
+    assert done.stderr.count("\n") == 1
+    assert says[0] in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize("name", IS)
 def test_what_is_no_sampler_is_told(name, tmp_path):
     sampler, says = IS[name]
