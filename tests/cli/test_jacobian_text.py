@@ -164,6 +164,86 @@ def chained(x: SE3, v: R3):
     return outputs(p=p, d=norm(p), T=x.retract(stack(p, v)))
 
 
+@factor
+def half_square(p: R3, *, a: R1, z: R1):
+    return dot(p, p) / (2 * a) - z
+
+
+@factor
+def repeated_poses(x: SE3, y: SE3, *, k: R1):
+    return 2 * x.local(y) + 3 * x.local(y) - k * x.local(y)
+
+
+@factor
+def sum_of_one(p: R3, q: R3):
+    return p + p + p - q - q
+
+
+@factor
+def zero(p: R3, q: R3, *, w: R1):
+    return w * p - w * p + q
+
+
+@factor
+def products_of_numbers(p: R1, q: R1):
+    return p * q * p + sin(p) * q - 2.0 * (3.0 * p) + q * (-0.25 * p) / 3 + sqrt(p) + sqrt(p)
+
+
+@factor
+def same_crosses(p: R3, q: R3):
+    return cross(p, q) + cross(p, q) - (-p)
+
+
+@factor
+def fourth_power(p: R2):
+    return dot(p, p) * dot(p, p)
+
+
+@factor
+def third_of_fourth_power(p: R1):
+    return p * p * p * p / 3
+
+
+@factor
+def other_order(v: R3, s: R1, t: R1):
+    return s * (t * v) + t * (s * v) - 0.5 * v - (v / 4)
+
+
+@factor
+def two_matrices(v: R3):
+    return MATRIX @ v + (2 * MATRIX) @ v
+
+
+@factor
+def entries(v: R3, w: R3):
+    return v * w - w * v + v * w + v / w + 2 * v / w
+
+
+@factor
+def below_zero(v: R3, k: R1):
+    return where(k > 0.1, 2 * v, -v) + where(k > 0.1, 2 * v, -v)
+
+
+@pytest.mark.parametrize(
+    ("f", "lines"),
+    [
+        (half_square, ["res_D_p = (1 / a) p^T"]),
+        (repeated_poses, ["a = x.local(y)", "res_D_x = -5 Jl^-1(a) + k Jl^-1(a)",
+                          "res_D_y = 5 Jr^-1(a) - k Jr^-1(a)"]),
+        (sum_of_one, ["res_D_p = 3 I", "res_D_q = -2 I"]),
+        (zero, ["res_D_p = 0", "res_D_q = I"]),
+        (same_crosses, ["res_D_p = -2 [q]x + I", "res_D_q = 2 [p]x"]),
+        (fourth_power, ["a = dot(p, p)", "res_D_p = 4 a p^T"]),
+        (other_order, ["a = t * v", "b = s * v", "res_D_v = 2 s t - 0.75 I", "res_D_s = a + t v",
+                       "res_D_t = s v + b"]),
+        (two_matrices, ["res_D_v = M + M"]),
+    ],
+    ids=lambda x: getattr(x, "name", ""),
+)  # fmt: skip
+def test_like_terms_are_added(f, lines):
+    assert list(jacobian_formulas(f.graph)) == lines
+
+
 #: Factors and the group of their Jr, Jl, Ad.
 CASES_OF_GROUP = [
     (group_operations, SE3), (group_operations_2d, SE2), (pose_pieces, SE3), (pose_pieces_2d, SE2),
@@ -171,7 +251,9 @@ CASES_OF_GROUP = [
     (rotation_of_similarity_2d, SO2), (rotation_of_pose, SO3), (rotation_of_pose_2d, SO2), (directions, SE3),
     (bearing_2d, SE2), (vectors, SE3), (constant_matrix, SE3), (chosen, SE3), (scalars, SE3), (chained, SE3),
     (library.between_so3, SO3), (library.between_se2, SE2), (library.range_se2, SE2), (library.range_se3,
-    SE3), (library.prior_so3, SO3),
+    SE3), (library.prior_so3, SO3), (half_square, SE3), (repeated_poses, SE3), (sum_of_one, SE3), (zero, SE3),
+    (products_of_numbers, SE3), (same_crosses, SE3), (fourth_power, SE3), (third_of_fourth_power, SE3),
+    (other_order, SE3), (entries, SE3), (below_zero, SE3),
 ]  # fmt: skip
 
 

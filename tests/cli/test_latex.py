@@ -14,6 +14,7 @@ from liegen import (
     S2,
     SE2,
     SE3,
+    SE23,
     SO3,
     Cal3_S2,
     R,
@@ -46,6 +47,26 @@ def test_between():
         r"\frac{\partial r}{\partial x} &= -I",
         r"\frac{\partial r}{\partial y} &= I",
     )
+
+
+@factor
+def halves(p: R3, *, a: R1, beta_max: R1, z: R1):
+    return dot(p, p) / (2 * a) - 2.5e-7 * (2 * p[0]) - dot(p, p) * beta_max / 3 - z
+
+
+@factor
+def extended(q: SO3, p: R3, v: R3, *, rear_left: SE23):
+    return rear_left.local(SE23(q, p, v))
+
+
+def test_like_terms_are_added_and_names_are_symbols():
+    assert latex_rows(halves.graph)[-1] == (
+        r"\frac{\partial r}{\partial p} &= \frac{1}{a}\, p^{\top} - 5 \cdot 10^{-7}\, I_{[0]} "
+        r"- \frac{2}{3}\, \beta_{\mathrm{max}}\, p^{\top}"
+    )
+    rows = "\n".join(latex_rows(extended.graph))
+    assert r"\mathrm{SE23}" in rows
+    assert r"\_" not in rows
 
 
 def test_prior_on_the_sphere():

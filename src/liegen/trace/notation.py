@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 from liegen.manifolds import Node
 
-from .latex_names import worded
+from .latex_names import latex_number, worded
 
 #: How strongly a text binds.
 SUM, NEGATIVE, WEAK, PRODUCT, ACTION, POWER, ATOM = range(1, 8)
@@ -94,6 +94,7 @@ HEADS: Mapping[str, tuple[Layout, Layout]] = {
     "0": (Layout("0"), Layout("0")),
     "1": (Layout("1"), Layout("1")),
     "2": (Layout("2"), Layout("2")),
+    "number": (Layout("#d"), Layout("#d", PRODUCT)),
     "J": (Layout("J"), Layout("J")),
     "M": (Layout("M"), Layout("M")),
     "Ad": (Layout("Ad(#0)"), Layout(r"\mathrm{Ad}_{#0}")),
@@ -190,6 +191,8 @@ _MAPS: Mapping[str, str] = {"local": "Log", "retract": "Exp"}
 
 def in_mathematics(detail: str) -> str:
     r"""``1[uncalibrate]`` with the number as subscript and the name upright; other details as they are."""
+    if re.fullmatch(r"[\d.]+e[+-]\d+", detail):
+        return latex_number(float(detail))
     found = re.fullmatch(r"(\d*)\[(\w+)\]", detail)
     if not found:
         return detail
