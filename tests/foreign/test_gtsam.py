@@ -15,6 +15,7 @@ from liegen.cli import app
 from liegen.errors import SourceError, ToolError
 from liegen.foreign import compare, foreign
 from liegen.foreign.gtsam_values import ROWS, from_gtsam, to_gtsam
+from liegen.foreign.signature import Argument
 from liegen.samples import Draw
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples" / "gtsam_factors.py"
@@ -106,7 +107,9 @@ def test_values_go_to_gtsam_and_back():
     for name in (*rows, "R1", "R2", "R3", "R6"):
         manifold = getattr(liegen, name)
         stored = np.asarray(draw.element(manifold), dtype=np.float64)
-        back = from_gtsam(manifold, to_gtsam(gtsam, manifold, stored))
+        form = manifold.form
+        argument = Argument("x", form.name, True, issubclass(manifold, liegen.R), form.dim, (form.size,))
+        back = from_gtsam(argument, to_gtsam(gtsam, argument, stored))
         sign = np.sign(back[:4] @ stored[:4]) if manifold.form.quaternions else 1.0
         back[:4] *= sign if manifold.form.quaternions else 1.0
         np.testing.assert_allclose(back, stored, rtol=0, atol=1e-12 * max(1, np.abs(stored).max()))
@@ -216,11 +219,21 @@ def test_classes(gtsam):
 
 
 @pytest.mark.parametrize(
+    ("function", "given", "says"),
+    [
+        (library.prior_r3, {}, "gtsam:right has 2 keys, prior_r3 has the variables x"),
+        (library.between_r2, {}, "gtsam:right tells no R2 for the argument 'z' of between_r2"),
+        (library.between_r2, {"z": "nothing"}, "gtsam has no 'nothing'"),
+    ],
+)
+def test_what_does_not_fit_the_formula_is_told(gtsam, function, given, says):
+    with pytest.raises(SourceError, match=says):
+        foreign("gtsam:right", function, given)
+
+
+@pytest.mark.parametrize(
     ("name", "options", "says"),
     [
-        ("prior_r3", [], "gtsam:right has 2 keys, prior_r3 has the variables x"),
-        ("between_r2", [], "gtsam:right tells no R2 for the argument 'z' of between_r2"),
-        ("between_r2", ["--given", "z=nothing"], "gtsam has no 'nothing'"),
         ("between_r3", ["--given", "w=z"], "with one of between_r3's given arguments: z"),
         ("between_r3", ["--given", "z"], "write ARGUMENT=NAME"),
         ("between_r3", ["--chart", "none"], "unknown"),
@@ -238,7 +251,7 @@ def test_a_robust_loss_cannot_be_taken_out(gtsam):
 
 
 def test_a_manifold_that_gtsam_lacks(gtsam):
-    with pytest.raises(ToolError, match="GTSAM has no type for SE3; there are vectors"):
+    with pytest.raises(ToolError, match="the installed GTSAM has no Pose3, which 'z' needs"):
         compare(library.prior_se3, foreign("gtsam:BetweenFactorPoint3", library.prior_se3))
 
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import click
 
 from .ranges import COUNT, SEED, TOLERANCE
-from .shared import Convention, chosen, convention_options, count, source_argument, table
+from .shared import Convention, chosen, convention_options, count, say, source_argument, table
 
 if TYPE_CHECKING:
+    from liegen.foreign import Comparison
     from liegen.sources import AnyFunction
 
 
@@ -51,31 +52,43 @@ def check_jacobian(
 
     The function gets the stored arguments in the factor's order; a factor of GTSAM has the variables as its
     keys, in order, and is compared without its noise. Where something differs, a known convention is named
-    if one explains it: order of the tangent, side, sign, missing Jr^-1, half angles.
+    if one explains it: chart, layout, order of the tangent, side, sign, a factor that is missing, and so on;
+    else which entries differ, and at which samples. The function runs in a process of its own.
     """
-    from liegen.foreign import compare, foreign
+    from liegen.foreign import compare, separate
 
     (function,) = chosen(source, [name], (), Convention(chart, layout, normalise))
     named = dict(_pair(text, function) for text in given)
-    found = foreign(place, function, named)
-    result = compare(function, found, samples=samples, seed=seed, tolerance=tolerance)
+    with separate(place, function, named) as found:
+        result = compare(function, found, samples=samples, seed=seed, tolerance=tolerance)
     if as_json:
         click.echo(json.dumps(result.as_json(), indent=2))
     else:
-        table(
-            ("output", "worst", "entry", "expected", "found", "verdict"),
-            [
-                (f.name, f"{f.worst:.1e}", str([*f.entry]), f"{f.expected:.9g}", f"{f.found:.9g}", f.verdict)
-                for f in result.findings
-            ],
-            right=(1, 3, 4),
-        )
-        for f in result.findings:
-            if not f.correct:
-                click.echo(f"\n{f.name} is worst at: {f.sample}")
-        click.echo(f"\n{count(result.samples, 'sample')}, tolerance {tolerance:g}")
+        _print(result)
     if not result.passed:
         raise click.exceptions.Exit(1)
+
+
+def _print(result: Comparison) -> None:
+    table(
+        ("output", "worst", "entry", "expected", "found", "verdict"),
+        [
+            (f.name, f"{f.worst:.1e}", str([*f.entry]), f"{f.expected:.9g}", f"{f.found:.9g}", f.verdict)
+            for f in result.findings
+        ],
+        right=(1, 3, 4),
+    )
+    for f in result.findings:
+        if not f.correct:
+            say(f"\n{f.name} is worst at: {f.sample}")
+        if f.same:
+            say(f"{f.name} is explained as well by: {'; or: '.join(f.same)}")
+    if result.convention:
+        cure = f"; check it with {result.options}" if result.options else ""
+        say(f"\nAll outputs are correct in {result.convention}{cure}")
+    say(f"\n{count(result.samples, 'sample')}, tolerance {result.tolerance:g}")
+    for why, number in result.left_out:
+        say(f"{count(number, 'more sample')} left out: {why}")
 
 
 def _pair(text: str, function: AnyFunction) -> tuple[str, str]:

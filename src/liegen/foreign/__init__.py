@@ -7,3 +7,4 @@ from .calls import foreign as foreign
 from .comparison import Comparison as Comparison
 from .comparison import Finding as Finding
 from .comparison import compare as compare
+from .process import separate as separate

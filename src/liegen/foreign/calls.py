@@ -22,16 +22,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.define import Function
-from liegen.errors import SourceError, ToolError
+from liegen.errors import LiegenError, SourceError
 from liegen.kernel import Kernel
 from liegen.manifolds import Value
-from liegen.trace import Graph
+from liegen.text import exception_text
 
 from .gtsam_factors import evaluated, given_by, is_factor, made
+from .returned import checked
+from .signature import Signature, of_kernel, signature
 
 Array = NDArray[np.float64]
 #: From the stored arguments to the residual and a Jacobian for each variable.
 Call = Callable[[Sequence[Array]], tuple[Array, ...]]
+
+_LIBRARIES = (".so", ".dylib", ".dll", ".pyd")
+_SOURCES = (".c", ".cc", ".cpp", ".cxx", ".h", ".hpp", ".o", ".a")
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """What stands at a place, and the stored numbers of the arguments that it fixes.
+
+    ``own``: it takes the numbers in liegen's own layout, whatever the factor's layout is.
+    """
+
+    call: Call
+    given: Mapping[str, Array] = field(default_factory=dict[str, Array])
+    own: bool = False
 
 
 @dataclass(frozen=True)
@@ -40,32 +57,52 @@ class Foreign:
 
     call: Call
     given: Mapping[str, Value] = field(default_factory=dict[str, Value])
-
-
-_SHARED = (".so", ".dylib", ".dll")
+    own: bool = False  # whether it takes the numbers in liegen's own layout
 
 
 def foreign(place: str, function: Function[..., Any], given: Mapping[str, str] | None = None) -> Foreign:
-    """What is at ``place``, checked for the shapes that the formula has.
+    """What is at ``place``, run in this process, checked for the shapes that the formula has.
 
     ``given`` names, for a factor of GTSAM, the objects beside it that are what the formula is given and the
     factor does not tell. Raises SourceError for a place that cannot be read or has no such function, and for
     a factor that lacks what the formula is given.
     """
-    kernel = function.kernel
+    return typed(loaded(place, signature(function), given or {}), function)
+
+
+def typed(found: Loaded, function: Function[..., Any]) -> Foreign:
+    """With elements in place of the stored numbers that it fixes."""
+    manifolds: dict[str, Any] = {p.name: p.manifold for p in function.graph.parameters}
+    values = {name: manifolds[name].from_storage(stored) for name, stored in found.given.items()}
+    return Foreign(found.call, values, found.own)
+
+
+def of_callable(function: Callable[..., Any], kernel: Kernel, place: str) -> Foreign:
+    """A Python function; its results are checked at each call, which raises ToolError for a wrong shape."""
+    return Foreign(checked(function, place, of_kernel(kernel)))
+
+
+def loaded(place: str, expected: Signature, given: Mapping[str, str]) -> Loaded:
+    """What is at a place; errors as :func:`foreign` says."""
     source, _, name = place.rpartition(":")
     if not source or not name.isidentifier():
         raise SourceError(f"{place!r} is not FILE.py:FUNCTION, MODULE:FUNCTION or LIBRARY.so:FUNCTION")
-    if source.endswith(_SHARED):
-        return Foreign(_c_function(Path(source), name, kernel))
+    if source.endswith(_SOURCES):
+        library = Path(source).with_suffix(".so").name
+        raise SourceError(
+            f"{source} is not compiled; compile it and give the library, for example: "
+            f"cc -shared -fPIC -O2 -o {library} {source} -lm, then --against ./{library}:{name}"
+        )
+    if source.endswith(_LIBRARIES):
+        return Loaded(_c_function(source, name, expected))
     module = _module(source)
     found: Any = getattr(module, name, None)
     if is_factor(found):
-        stated = {argument: _object(module, other, source) for argument, other in (given or {}).items()}
-        return _gtsam_factor(found, function.graph, kernel, place, stated)
+        stated = {argument: _object(module, other, source) for argument, other in given.items()}
+        return _gtsam_factor(found, expected, place, stated)
     if not callable(found):
         raise SourceError(f"{source} has no function {name!r}")
-    return of_callable(found, kernel, place)
+    return Loaded(checked(found, place, expected))
 
 
 def _object(module: Any, name: str, source: str) -> Any:
@@ -74,60 +111,32 @@ def _object(module: Any, name: str, source: str) -> Any:
     return getattr(module, name)
 
 
-def _gtsam_factor(found: Any, graph: Graph, kernel: Kernel, place: str, stated: Mapping[str, Any]) -> Foreign:
-    variables = graph.variables
-    names = [p.name for p in graph.parameters]
-
+def _gtsam_factor(found: Any, expected: Signature, place: str, stated: Mapping[str, Any]) -> Loaded:
     def of_object(*arguments: Array) -> tuple[Array, ...]:
-        values = dict(zip(names, arguments, strict=True))
-        factor = made(found, graph, values) if isinstance(found, type) else found
-        return evaluated(factor, variables, [values[p.name] for p in variables])
+        values = {a.name: stored for a, stored in zip(expected.arguments, arguments, strict=True)}
+        factor = made(found, expected, values) if isinstance(found, type) else found
+        return evaluated(factor, expected.variables, [values[v.name] for v in expected.variables])
 
-    call = _checked(of_object, kernel, place)
-    return Foreign(call) if isinstance(found, type) else Foreign(call, given_by(found, graph, place, stated))
-
-
-def of_callable(function: Callable[..., Any], kernel: Kernel, place: str) -> Foreign:
-    """A Python function; its results are checked at each call, which raises ToolError for a wrong shape."""
-    return Foreign(_checked(function, kernel, place))
+    call = checked(of_object, place, expected)
+    if isinstance(found, type):
+        return Loaded(call, own=True)
+    return Loaded(call, given_by(found, expected, place, stated), own=True)
 
 
-def _checked(function: Callable[..., Any], kernel: Kernel, place: str) -> Call:
-    shapes = [(kernel.outputs[0].dim,), *((kernel.outputs[0].dim, v.dim) for v in kernel.variables)]
-    names = ["the residual", *(f"the Jacobian by {v.name}" for v in kernel.variables)]
-
-    def call(arguments: Sequence[Array]) -> tuple[Array, ...]:
-        try:
-            results = function(*arguments)
-        except ToolError as error:
-            raise ToolError(f"{place}: {error}") from None
-        except Exception as error:
-            raise ToolError(f"{place} raised {type(error).__name__}: {error}") from error
-        if not isinstance(results, (tuple, list)) or len(results) != len(shapes):  # pyright: ignore[reportUnknownArgumentType]
-            raise ToolError(f"{place} must return {len(shapes)} arrays: {', '.join(names)}")
-        arrays: list[Array] = []
-        listed: list[Any] = [*results]  # pyright: ignore[reportUnknownArgumentType]
-        for value, shape, name in zip(listed, shapes, names, strict=True):
-            array = np.asarray(value, dtype=np.float64)
-            if array.size != np.prod(shape) or (array.ndim == 2 and len(shape) == 2 and array.shape != shape):
-                raise ToolError(f"{place}: {name} has shape {array.shape}, {shape} is needed")
-            arrays.append(array.reshape(shape))
-        return tuple(arrays)
-
-    return call
-
-
-def _c_function(library: Path, name: str, kernel: Kernel) -> Call:
+def _c_function(source: str, name: str, expected: Signature) -> Call:
+    library = Path(source)
+    if not library.is_file():
+        raise SourceError(f"{source} cannot be loaded: there is no such file; give LIBRARY.so:FUNCTION")
     try:
         function = ctypes.CDLL(str(library.resolve()))[name]
     except OSError as error:
-        raise SourceError(f"{library} cannot be loaded: {error}") from None
+        reason = str(error).replace(str(library.resolve()), source)
+        raise SourceError(f"{source} cannot be loaded: {reason.removeprefix(f'{source}: ')}") from None
     except AttributeError:
-        raise SourceError(f"{library} has no function {name!r}") from None
+        raise SourceError(f"{source} has no function {name!r}") from None
     function.restype = ctypes.c_int
-    rows = kernel.outputs[0].dim
-    shapes = [(kernel.outputs[0].size,), *((rows, v.dim) for v in kernel.variables)]
-    function.argtypes = [ctypes.c_void_p] * (len(kernel.arguments) + len(shapes))
+    shapes = [(expected.size,), *((expected.rows, v.dim) for v in expected.variables)]
+    function.argtypes = [ctypes.c_void_p] * (len(expected.arguments) + len(shapes))
 
     def call(arguments: Sequence[Array]) -> tuple[Array, ...]:
         given = [np.ascontiguousarray(a, dtype=np.float64) for a in arguments]
@@ -151,7 +160,7 @@ def _module(source: str) -> Any:
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         return module
-    except SourceError:
+    except (LiegenError, KeyboardInterrupt):
         raise
-    except Exception as error:
-        raise SourceError(f"{source} cannot be imported: {type(error).__name__}: {error}") from None
+    except BaseException as error:  # a user's file may raise anything
+        raise SourceError(f"{source} cannot be imported: {exception_text(error)}") from error

@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.errors import SourceError, ToolError
-from liegen.manifolds import Value
-from liegen.trace import Graph, Parameter
 
 from .gtsam_values import from_gtsam, to_gtsam
+from .signature import Argument, Signature
 
 Array = NDArray[np.float64]
 #: Methods of a factor that give what it measured, its prior or its calibration.
@@ -31,58 +30,61 @@ def is_factor(found: Any) -> bool:
     return all(hasattr(found, name) for name in ("keys", "linearize", "noiseModel", "unwhitenedError"))
 
 
-def given_by(factor: Any, graph: Graph, place: str, stated: Mapping[str, Any]) -> Mapping[str, Value]:
-    """What a factor fixes of the arguments that a formula is given: its ``measured()`` and the like.
+def given_by(factor: Any, expected: Signature, place: str, stated: Mapping[str, Any]) -> Mapping[str, Array]:
+    """The stored numbers of what a factor fixes of the arguments that a formula is given.
+
+    They are those of its ``measured()`` and the like.
 
     ``stated`` has those that it does not tell, by the argument's name. Raises SourceError where it has other
     keys than the formula variables, or lacks a given argument.
     """
-    variables = graph.variables
+    variables = expected.variables
     if len(factor.keys()) != len(variables):
         raise SourceError(
-            f"{place} has {len(factor.keys())} keys, {graph.name} has the variables "
+            f"{place} has {len(factor.keys())} keys, {expected.factor} has the variables "
             f"{', '.join(p.name for p in variables)}"
         )
     held = [getattr(factor, name)() for name in _GIVEN if hasattr(factor, name)]
-    found: dict[str, Value] = {}
-    for p in graph.parameters:
+    found: dict[str, Array] = {}
+    for p in expected.arguments:
         if p.variable:
             continue
         candidates = [stated[p.name]] if p.name in stated else held
-        stored = next((s for h in candidates if (s := from_gtsam(p.manifold, h)) is not None), None)
+        stored = next((s for h in candidates if (s := from_gtsam(p, h)) is not None), None)
         if stored is None:
             raise SourceError(
-                f"{place} tells no {p.manifold.form.name} for the argument {p.name!r} of {graph.name} "
+                f"{place} tells no {p.manifold} for the argument {p.name!r} of {expected.factor} "
                 f"({', '.join(f'{n}()' for n in _GIVEN)}); say where it is: --given {p.name}=NAME"
             )
-        found[p.name] = p.manifold.from_storage(stored)
+        found[p.name] = stored
     return found
 
 
-def evaluated(factor: Any, variables: Sequence[Parameter], arguments: Sequence[Array]) -> tuple[Array, ...]:
+def evaluated(factor: Any, variables: Sequence[Argument], arguments: Sequence[Array]) -> tuple[Array, ...]:
     """The unwhitened residual and the Jacobian by each variable, which are the factor's keys in order."""
     gtsam = _module_of(factor)
     values = gtsam.Values()
     for key, p, stored in zip(factor.keys(), variables, arguments, strict=True):
-        values.insert(key, to_gtsam(gtsam, p.manifold, stored))
+        values.insert(key, to_gtsam(gtsam, p, stored))
     residual = np.asarray(factor.unwhitenedError(values), dtype=np.float64)
     A = _unwhitened(gtsam, factor, values, len(residual))
-    dims = [p.manifold.form.dim for p in variables]
+    dims = [p.dim for p in variables]
     if A.shape[1] != sum(dims):
         raise ToolError(f"its Jacobians have {A.shape[1]} columns, the variables {sum(dims)}")
     return residual, *np.split(A, np.cumsum(dims)[:-1], axis=1)
 
 
-def made(factor_class: Any, graph: Graph, arguments: Mapping[str, Array]) -> Any:
+def made(factor_class: Any, expected: Signature, arguments: Mapping[str, Array]) -> Any:
     """A factor of a class such as BetweenFactorPose3: keys, what is given, and unit noise."""
     gtsam = _module_of(factor_class)
-    variables = graph.variables
-    given = [to_gtsam(gtsam, p.manifold, arguments[p.name]) for p in graph.parameters if not p.variable]
-    noise = gtsam.noiseModel.Unit.Create(graph.outputs[0][1].manifold.form.dim)
+    variables = expected.variables
+    others = [p for p in expected.arguments if not p.variable]
+    given = [to_gtsam(gtsam, p, arguments[p.name]) for p in others]
+    noise = gtsam.noiseModel.Unit.Create(expected.rows)
     try:
         return factor_class(*range(len(variables)), *given, noise)
     except TypeError:
-        names = [*(f"key_{p.name}" for p in variables), *(p.name for p in graph.parameters if not p.variable)]
+        names = [*(f"key_{p.name}" for p in variables), *(p.name for p in others)]
         raise ToolError(
             f"{factor_class.__name__}({', '.join(names)}, noise) is not how it is made; give a factor object"
         ) from None

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from liegen.errors import ToolError
-from liegen.manifolds import Manifold, Vector
+
+from .signature import Argument
 
 Array = NDArray[np.float64]
 
@@ -72,26 +73,33 @@ ROWS: Mapping[str, Row] = {
 }
 
 
-def to_gtsam(gtsam: Any, manifold: type[Manifold], stored: Array) -> Any:
-    """GTSAM's object. Raises ToolError for a manifold without a row, or that this GTSAM lacks."""
-    if issubclass(manifold, Vector):
-        return float(stored[0]) if manifold.form.dim == 1 else stored
-    row = ROWS.get(manifold.form.name)
-    if row is None or not hasattr(gtsam, row.name):
-        known = ", ".join(f"{name} ({r.name})" for name, r in ROWS.items() if hasattr(gtsam, r.name))
-        raise ToolError(f"GTSAM has no type for {manifold.form.name}; there are vectors, {known}")
+def to_gtsam(gtsam: Any, argument: Argument, stored: Array) -> Any:
+    """GTSAM's object. Raises ToolError for a manifold without a row, or whose class this GTSAM lacks."""
+    if argument.vector:
+        return float(stored[0]) if argument.dim == 1 else stored
+    row = ROWS.get(argument.manifold)
+    if row is None:
+        known = ", ".join(f"{name} ({r.name})" for name, r in ROWS.items())
+        raise ToolError(
+            f"liegen knows no conversion of {argument.manifold} ({argument.name!r}) to a type of GTSAM; "
+            f"it knows those of vectors, {known}; give a Python function that calls the factor instead"
+        )
+    if not hasattr(gtsam, row.name):
+        raise ToolError(
+            f"the installed GTSAM has no {row.name}, which {argument.name!r} needs; install a newer one"
+        )
     return row.made(gtsam, stored)
 
 
-def from_gtsam(manifold: type[Manifold], found: Any) -> Array | None:
-    """The stored numbers of GTSAM's object; None where it is of another class than the manifold's."""
-    if issubclass(manifold, Vector):
+def from_gtsam(argument: Argument, found: Any) -> Array | None:
+    """The stored numbers of GTSAM's object; None where it is of another class than the argument's."""
+    if argument.vector:
         try:
             numbers = np.atleast_1d(np.asarray(found, dtype=np.float64))
         except (TypeError, ValueError):
             return None
-        return numbers if numbers.shape == (manifold.form.dim,) else None
-    row = ROWS.get(manifold.form.name)
+        return numbers if numbers.shape == (argument.dim,) else None
+    row = ROWS.get(argument.manifold)
     if row is None or type(found).__name__ != row.name:
         return None
     return np.array([*row.stored(found)], dtype=np.float64)
