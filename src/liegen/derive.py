@@ -13,7 +13,7 @@ from liegen.algebra.linear import Matrix
 from liegen.algebra.linear import Vector as Coordinates
 from liegen.charts import GTSAM, Preset, form_chart
 from liegen.choice import Way, entries, ranked
-from liegen.differentiate import STRATEGIES, Expressions, expressions, fused, linearised
+from liegen.differentiate import STRATEGIES, Expressions, expressions, fused, linearised, nested
 from liegen.differentiate.local import symbols
 from liegen.kernel import Argument, Kernel, Output, PassCount
 from liegen.layouts import OWN, Stored, storage
@@ -41,7 +41,7 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
     values = expressions(graph)
     ways = _ways(graph, values) if graph.variables else []
     begun = lowered(graph, values, {}, weighting, beside=entries(m for way in ways for m in way.blocks))
-    value, rows = optimise(alone(begun))
+    value, rows = min(_values(graph, values, begun, weighting), key=lambda found: found[0].operations)
     name, best = "", value
     if ways:
         name, best, rows = min(_candidates(ways, begun, weighting), key=lambda c: c[1].operations)
@@ -70,13 +70,24 @@ def derive(graph: Graph, weighting: Weighting | None = None, *, in_place: bool =
 
 
 def _ways(graph: Graph, values: Expressions) -> list[Way]:
-    """The local blocks as they are and without what cancels, fused and not."""
+    """The local blocks as they are and without what cancels, fused and not, with products nested and not."""
     ways = [Way(graph, values, local) for local in linearised(graph, values)]
-    other = fused(graph)
-    if other is not graph:
+    inner = nested(graph)
+    graphs = {id(g): g for g in (graph, fused(graph), inner, fused(inner))}
+    for other in list(graphs.values())[1:]:
         shared = expressions(other, values)
         ways += [Way(other, shared, local) for local in linearised(other, shared)]
     return ways
+
+
+def _values(
+    graph: Graph, values: Expressions, begun: Program, weighting: Weighting | None
+) -> Iterator[tuple[Program, tuple[tuple[str, int], ...]]]:
+    """The programs of the values alone, with products as they are and nested, and their passes."""
+    yield optimise(alone(begun))
+    other = nested(graph)
+    if other is not graph:
+        yield optimise(lowered(other, expressions(other, values), {}, weighting))
 
 
 def _candidates(

@@ -11,11 +11,11 @@ from liegen.algebra import Scalar
 from liegen.algebra.linear import Matrix, Vector, dot, eye
 from liegen.choice import Ledger, entries, opened
 from liegen.derive import lowered_outputs, weight_symbols
-from liegen.differentiate import Ladder, Terms, expressions, ladder, linearised, normal_terms
+from liegen.differentiate import Ladder, Terms, expressions, ladder, linearised, nested, normal_terms
 from liegen.kernel import Kernel, Output, PassCount
 from liegen.names import block_name, gradient_name
 from liegen.noise import Weighted, Weighting
-from liegen.program import Port
+from liegen.program import Port, Program
 from liegen.program.passes import optimise
 from liegen.program.rewrite import uncollected
 from liegen.trace import Graph, Parameter
@@ -33,9 +33,29 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
     Outputs: ``cost`` (half the squared norm of the residual, or half of rho); for each variable ``g_x``,
     shape (dim,); for each pair of variables in their order ``H_x_y``, shape (dim x, dim y), symmetric where
     both are one variable. H and g are those of the whitened, weighed residual and Jacobians of the factor
-    itself. Where they are formed is a choice: each frontier of :func:`normal_terms` is tried, and the
-    program with the fewest operations is kept.
+    itself. Where they are formed is a choice: each frontier of :func:`normal_terms` is tried, with products
+    that act on vectors as they are and nested, and the program with the fewest operations is kept.
     """
+    graphs = {id(g): g for g in (graph, nested(graph))}
+    found = [_best(g, weighting) for g in graphs.values()]
+    best, rows = min(found, key=lambda one: one[0].operations)
+    (residual,) = kernel.outputs
+    return replace(
+        kernel,
+        name=f"{kernel.name}_gauss_newton",
+        doc=f"Gauss-Newton terms of {kernel.name}.\n\n{kernel.doc}",
+        arguments=tuple(replace(a, variable=False, named=not a.variable) for a in kernel.arguments),
+        outputs=_outputs(graph, weighting),
+        jacobian_formulas=(*kernel.jacobian_formulas, *_formulas(kernel, residual.name, weighting)),
+        value=best,
+        jacobians=best,
+        passes=tuple(PassCount(*row) for row in rows),
+        in_place=False,
+    )
+
+
+def _best(graph: Graph, weighting: Weighting | None) -> tuple[Program, tuple[tuple[str, int], ...]]:
+    """The program of a graph's terms that takes the fewest operations, and its passes."""
     values = expressions(graph)
     given = weight_symbols(graph, weighting)
     ((_, node),) = graph.outputs
@@ -52,20 +72,7 @@ def gauss_newton_kernel(kernel: Kernel, graph: Graph, weighting: Weighting | Non
         for count, steps, frontier in ranking
         if count <= (1 + MARGIN) * least
     ]
-    best, rows = min((optimise(program) for program in programs), key=lambda found: found[0].operations)
-    (residual,) = kernel.outputs
-    return replace(
-        kernel,
-        name=f"{kernel.name}_gauss_newton",
-        doc=f"Gauss-Newton terms of {kernel.name}.\n\n{kernel.doc}",
-        arguments=tuple(replace(a, variable=False, named=not a.variable) for a in kernel.arguments),
-        outputs=_outputs(graph, weighting),
-        jacobian_formulas=(*kernel.jacobian_formulas, *_formulas(kernel, residual.name, weighting)),
-        value=best,
-        jacobians=best,
-        passes=tuple(PassCount(*row) for row in rows),
-        in_place=False,
-    )
+    return min((optimise(program) for program in programs), key=lambda found: found[0].operations)
 
 
 def _ranked(

@@ -9,6 +9,7 @@ from .graph_jacobian import Linearised as Linearised
 from .graph_jacobian import expressions as expressions
 from .graph_jacobian import jacobians as jacobians
 from .graph_jacobian import linearised as linearised
+from .nest import nested as nested
 from .normal import Ladder as Ladder
 from .normal import Terms as Terms
 from .normal import ladder as ladder
