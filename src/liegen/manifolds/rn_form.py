@@ -10,7 +10,8 @@ from liegen.algebra.linear import Chain, Matrix, Vector, dot, eye, negate, scale
 from .form import Coords, GroupForm, Source
 
 _TINY, _HUGE, _SHIFT = 2.0**-900, 2.0**900, 2.0**600
-_PART = 2.0**-5
+#: Less than 32 half units in the last place of a size are rounding: ``size + x * ROUNDING`` is ``size``.
+ROUNDING = 2.0**-5
 
 
 class RForm(GroupForm):
@@ -103,8 +104,8 @@ def direction_or_rounding(v: Coords, size: Scalar) -> Vector:
     That is where size + |v|/32 rounds to size, in whatever precision: below 32 units of the rounding.
     """
     if len(v) == 1:
-        near = le(size + fabs(v[0]) * _PART, size)
+        near = le(size + fabs(v[0]) * ROUNDING, size)
         return (select(near, 0.0, select(lt(v[0], 0), -1.0, v[0] / fabs(select(near, 1.0, v[0])))),)
     w, n, back = scaled_length(v)
-    near = le(size + n * back * _PART, size)
+    near = le(size + n * back * ROUNDING, size)
     return scale(select(near, 0.0, 1 / select(near, 1.0, n)), w)

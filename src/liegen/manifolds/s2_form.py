@@ -13,7 +13,7 @@ from liegen.algebra.linear import Chain, Matrix, Vector, cross, dot, matmul, mat
 from liegen.coefficients import stumpff
 
 from .form import Blocks, Coords, ManifoldForm, Rule
-from .rn_form import direction_or_zero, length
+from .rn_form import ROUNDING, direction_or_zero, length
 
 
 def _both(a: Scalar, b: Scalar) -> Scalar:
@@ -56,12 +56,15 @@ def _polar(n: Coords, m: Coords) -> _Polar:
     y = matvec(basis(n), m)
     cosine = dot(n, m)
     sine = length(y)
-    positive = lt(0, sine)
+    opposite = lt(cosine, 0)
+    # behind x a sine that is but rounding has no direction: where 1 + sine/32 rounds to 1
+    size = select(opposite, 1.0, 0.0)
+    near = le(size + sine * ROUNDING, size)  # not so if NaN
     u = direction_or_zero(y)
-    u = (select(positive, u[0], 1.0), u[1])
+    u = (select(near, 1.0, u[0]), select(near, 0.0, u[1]))
     angle = atan2(sine, cosine)
     # at the antipode there is no Jacobian: 1/0
-    ratio = select(positive, angle, 1.0) / select(positive, sine, select(lt(0, cosine), 1.0, 0.0))
+    ratio = select(near, 1.0, angle) / select(near, select(opposite, 0.0, 1.0), sine)
     return _Polar(y, u, sine, cosine, angle, ratio)
 
 
