@@ -30,7 +30,7 @@
  *   res_D_x: 2 x 6, derivative of res by the tangent of x
  *   res_D_y: 2 x 6, derivative of res by the tangent of y
  *
- * Operations: 139 (residual only), 319 (with Jacobians)
+ * Operations: 144 (residual only), 330 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

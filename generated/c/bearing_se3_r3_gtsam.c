@@ -31,7 +31,7 @@
  *   res_D_x: 2 x 6, derivative of res by the tangent of x
  *   res_D_y: 2 x 3, derivative of res by the tangent of y
  *
- * Operations: 139 (residual only), 267 (with Jacobians)
+ * Operations: 144 (residual only), 278 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -115,12 +115,15 @@ int liegen_factors_bearing_se3_r3_gtsam_res(
     const double t50 = t43 * t49;
     const double t51 = t44 * t49;
     const double t52 = t47 ? 2.409919865102884e-181 : (t46 ? 4.149515568880993e+180 : 1.0);
-    const double t53 = sqrt(t51 * t51 + t50 * t50);
-    const double t54 = 0.0 < t53 ? t53 : 1.0;
-    const double t55 = t53 * t52;
-    const double t56 = liegen_factors_atan2(t55, t26 * z_z + t27 * z_x - t28 * z_y);
-    res[0] = t56 * (0.0 < t55 ? t51 / t54 : -1.0);
-    res[1] = t56 * (t50 / t54);
+    const double t53 = t26 * z_z + t27 * z_x - t28 * z_y;
+    const double t54 = sqrt(t51 * t51 + t50 * t50);
+    const double t55 = t54 * t52;
+    const double t56 = 0.0 < t54 ? t54 : 1.0;
+    const double t57 = liegen_factors_atan2(t55, t53);
+    const double t58 = t53 < 0.0 ? 1.0 : 0.0;
+    const int t59 = t58 + t55 * 0.03125 <= t58;
+    res[0] = t57 * (t59 ? -1.0 : t51 / t56);
+    res[1] = t59 ? 0.0 : t57 * (t50 / t56);
     return 0;
 }
 
@@ -215,64 +218,66 @@ int liegen_factors_bearing_se3_r3_gtsam(
     const double t65 = t55 * t64;
     const double t66 = t56 * t64;
     const double t67 = t62 ? 2.409919865102884e-181 : (t61 ? 4.149515568880993e+180 : 1.0);
-    const double t68 = sqrt(t43 ? t58 + t59 : (t42 ? t59 + t57 : t58 + t57));
-    const double t69 = (t43 ? t37 : (t42 ? t38 : t36)) / t68;
-    const double t70 = t38 * z_y + (t36 * z_z + t37 * z_x);
-    const double t71 = sqrt(t66 * t66 + t65 * t65);
-    const double t72 = 0.0 < t71 ? t71 : 1.0;
-    const double t73 = t71 * t67;
-    const double t74 = t65 / t72;
-    const double t75 = t55 * t69 - t70;
-    const int t76 = 0.0 < t73;
-    const double t77 = t76 ? t66 / t72 : -1.0;
-    const double t78 = t56 * t69;
-    const double t79 = liegen_factors_atan2(t73, t70);
-    const double t80 = (t76 ? t79 : 1.0) / (t76 ? t73 : (0.0 < t70 ? 1.0 : 0.0));
-    const double t81 = t29 ? 2.409919865102884e-181 : (t28 ? 4.149515568880993e+180 : 1.0);
-    const double t82 = t70 * (t74 * t78 - t77 * t75) - t56 * t73;
-    const double t83 = t80 * (t74 * t75 + t77 * t78);
-    const double t84 = t80 * (t70 * t77);
-    const double t85 = t74 * (t70 * t70) - t55 * t73;
-    const double t86 = t74 * t82 + t77 * t83;
-    const double t87 = t74 * t85 + t77 * t84;
-    const double t88 = 1.0 / (t34 * t81);
-    const double t89 = t51 * t88;
-    const double t90 = t54 * t88;
-    const double t91 = t49 * t88;
-    const double t92 = t53 * t88;
-    const double t93 = t50 * t88;
-    const double t94 = t52 * t88;
-    const double t95 = t90 * t87 - t91 * t86;
-    const double t96 = t92 * t87 + t93 * t86;
-    const double t97 = (t43 ? 0.0 : t89 * t86) - t94 * t87;
-    const double t98 = t74 * t83 - t77 * t82;
-    const double t99 = t74 * t84 - t77 * t85;
-    const double t100 = t99 * t90 - t98 * t91;
-    const double t101 = t98 * t93 + t99 * t92;
-    const double t102 = (t43 ? 0.0 : t98 * t89) - t99 * t94;
-    res[0] = t79 * t77;
-    res[1] = -(t79 * t74);
+    const double t68 = t38 * z_y + (t36 * z_z + t37 * z_x);
+    const double t69 = sqrt(t66 * t66 + t65 * t65);
+    const double t70 = t69 * t67;
+    const double t71 = 0.0 < t69 ? t69 : 1.0;
+    const double t72 = sqrt(t43 ? t58 + t59 : (t42 ? t59 + t57 : t58 + t57));
+    const double t73 = (t43 ? t37 : (t42 ? t38 : t36)) / t72;
+    const int t74 = t68 < 0.0;
+    const double t75 = t74 ? 1.0 : 0.0;
+    const int t76 = t75 + t70 * 0.03125 <= t75;
+    const double t77 = t65 / t71;
+    const double t78 = t56 * t73;
+    const double t79 = t55 * t73 - t68;
+    const double t80 = t76 ? -1.0 : t66 / t71;
+    const double t81 = liegen_factors_atan2(t70, t68);
+    const double t82 = (t76 ? 1.0 : t81) / (t76 ? (t74 ? 0.0 : 1.0) : t70);
+    const double t83 = t29 ? 2.409919865102884e-181 : (t28 ? 4.149515568880993e+180 : 1.0);
+    const double t84 = t68 * ((t76 ? 0.0 : t77 * t78) - t80 * t79) - t56 * t70;
+    const double t85 = (t76 ? 0.0 : t77 * (t68 * t68)) - t55 * t70;
+    const double t86 = t82 * ((t76 ? 0.0 : t77 * t79) + t80 * t78);
+    const double t87 = t82 * (t68 * t80);
+    const double t88 = (t76 ? 0.0 : t77 * t84) + t80 * t86;
+    const double t89 = (t76 ? 0.0 : t77 * t85) + t80 * t87;
+    const double t90 = 1.0 / (t34 * t83);
+    const double t91 = t51 * t90;
+    const double t92 = t54 * t90;
+    const double t93 = t49 * t90;
+    const double t94 = t53 * t90;
+    const double t95 = t50 * t90;
+    const double t96 = t52 * t90;
+    const double t97 = t92 * t89 - t93 * t88;
+    const double t98 = t95 * t88 + t94 * t89;
+    const double t99 = (t43 ? 0.0 : t91 * t88) - t96 * t89;
+    const double t100 = (t76 ? 0.0 : t77 * t86) - t80 * t84;
+    const double t101 = (t76 ? 0.0 : t77 * t87) - t80 * t85;
+    const double t102 = t101 * t92 - t100 * t93;
+    const double t103 = t100 * t95 + t101 * t94;
+    const double t104 = (t43 ? 0.0 : t100 * t91) - t101 * t96;
+    res[0] = t81 * t80;
+    res[1] = -(t76 ? 0.0 : t81 * t77);
     if (res_D_x != NULL) {
-        res_D_x[0] = t25 * t100 - t26 * t101;
-        res_D_x[1] = t24 * t101 - t25 * t102;
-        res_D_x[2] = t26 * t102 - t24 * t100;
-        res_D_x[3] = t102;
-        res_D_x[4] = t100;
-        res_D_x[5] = t101;
-        res_D_x[6] = t25 * t95 - t26 * t96;
-        res_D_x[7] = t24 * t96 - t25 * t97;
-        res_D_x[8] = t26 * t97 - t24 * t95;
-        res_D_x[9] = t97;
-        res_D_x[10] = t95;
-        res_D_x[11] = t96;
+        res_D_x[0] = t25 * t102 - t26 * t103;
+        res_D_x[1] = t24 * t103 - t25 * t104;
+        res_D_x[2] = t26 * t104 - t24 * t102;
+        res_D_x[3] = t104;
+        res_D_x[4] = t102;
+        res_D_x[5] = t103;
+        res_D_x[6] = t25 * t97 - t26 * t98;
+        res_D_x[7] = t24 * t98 - t25 * t99;
+        res_D_x[8] = t26 * t99 - t24 * t97;
+        res_D_x[9] = t99;
+        res_D_x[10] = t97;
+        res_D_x[11] = t98;
     }
     if (res_D_y != NULL) {
-        res_D_y[0] = t9 * t100 - t5 * t101 - t22 * t102;
-        res_D_y[1] = t23 * t100 - t13 * t101 - t8 * t102;
-        res_D_y[2] = t4 * t102 - (t21 * t101 + t14 * t100);
-        res_D_y[3] = t9 * t95 - t5 * t96 - t22 * t97;
-        res_D_y[4] = t23 * t95 - t13 * t96 - t8 * t97;
-        res_D_y[5] = t4 * t97 - (t21 * t96 + t14 * t95);
+        res_D_y[0] = t9 * t102 - t5 * t103 - t22 * t104;
+        res_D_y[1] = t23 * t102 - t13 * t103 - t8 * t104;
+        res_D_y[2] = t4 * t104 - (t21 * t103 + t14 * t102);
+        res_D_y[3] = t9 * t97 - t5 * t98 - t22 * t99;
+        res_D_y[4] = t23 * t97 - t13 * t98 - t8 * t99;
+        res_D_y[5] = t4 * t99 - (t21 * t98 + t14 * t97);
     }
     return 0;
 }

@@ -22,7 +22,7 @@
  *   res: 2, R2 (x, y)
  *   res_D_x: 2 x 2, derivative of res by the tangent of x
  *
- * Operations: 77 (residual only), 185 (with Jacobians)
+ * Operations: 82 (residual only), 197 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -72,9 +72,12 @@ int liegen_factors_prior_s2_res(
     const double t24 = 0.0 < t23 ? t23 : 1.0;
     const double t25 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
     const double t26 = t23 * t25;
-    const double t27 = liegen_factors_atan2(t26, x_x * z_x + x_y * z_y + x_z * z_z);
-    res[0] = t27 * (0.0 < t26 ? t21 / t24 : 1.0);
-    res[1] = t27 * (t22 / t24);
+    const double t27 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const double t28 = t27 < 0.0 ? 1.0 : 0.0;
+    const int t29 = t28 + t26 * 0.03125 <= t28;
+    const double t30 = liegen_factors_atan2(t26, t27);
+    res[0] = t30 * (t29 ? 1.0 : t21 / t24);
+    res[1] = t29 ? 0.0 : t30 * (t22 / t24);
     return 0;
 }
 
@@ -121,44 +124,46 @@ int liegen_factors_prior_s2(
     const double t26 = 0.0 < t25 ? t25 : 1.0;
     const double t27 = t20 ? 2.409919865102884e-181 : (t21 ? 4.149515568880993e+180 : 1.0);
     const double t28 = t25 * t27;
-    const int t29 = 0.0 < t28;
-    const double t30 = t29 ? t23 / t26 : 1.0;
-    const double t31 = x_x * z_x + x_y * z_y + x_z * z_z;
-    const double t32 = liegen_factors_atan2(t28, t31);
-    const double t33 = t24 / t26;
-    const double t34 = (t29 ? t32 : 1.0) / (t29 ? t28 : (0.0 < t31 ? 1.0 : 0.0));
-    const double t35 = fabs(x_x);
-    const double t36 = fabs(x_y);
-    const double t37 = fabs(x_z);
-    const int t38 = t35 <= t36 && t35 <= t37;
-    const int t39 = t36 <= t37;
-    const double t40 = t39 ? -x_z : x_y;
-    const double t41 = t38 ? x_z : (t39 ? 0.0 : t13);
-    const double t42 = t38 ? x_y : (t39 ? t13 : 0.0);
-    const double t43 = 1.0 / sqrt((t38 ? 0.0 : t40 * t40) + t41 * t41 + t42 * t42);
-    const double t44 = t41 * t43;
-    const double t45 = t40 * t43;
-    const double t46 = t42 * t43;
-    const double t47 = t15 * t44 - (t38 ? 0.0 : t12 * t45) - t16 * t46;
-    const double t48 = (t38 ? 0.0 : (t3 ? 0.0 : t14 * t45)) + t11 * t44 + t10 * t46;
-    const double t49 = t34 * (t30 * t47 - t33 * t48);
-    const double t50 = t28 * ((t38 ? 0.0 : t6 * t45) - z_y * t44 + z_z * t46);
-    const double t51 = t31 * (t30 * t48 + t33 * t47) + t50;
-    const double t52 = x_y * t46 + x_z * t44;
-    const double t53 = (t38 ? 0.0 : x_z * t45) + x_x * t46;
-    const double t54 = x_x * t44 - (t38 ? 0.0 : x_y * t45);
-    const double t55 = t12 * t52 + t15 * t53 + t16 * t54;
-    const double t56 = t11 * t53 - (t3 ? 0.0 : t14 * t52) - t10 * t54;
-    const double t57 = t34 * (t30 * t55 - t33 * t56);
-    const double t58 = t28 * (z_x * t52 - z_y * t53 - z_z * t54);
-    const double t59 = t31 * (t30 * t56 + t33 * t55) + t58;
-    res[0] = t32 * t30;
-    res[1] = t32 * t33;
+    const double t29 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const int t30 = t29 < 0.0;
+    const double t31 = t30 ? 1.0 : 0.0;
+    const int t32 = t31 + t28 * 0.03125 <= t31;
+    const double t33 = t32 ? 1.0 : t23 / t26;
+    const double t34 = liegen_factors_atan2(t28, t29);
+    const double t35 = t24 / t26;
+    const double t36 = (t32 ? 1.0 : t34) / (t32 ? (t30 ? 0.0 : 1.0) : t28);
+    const double t37 = fabs(x_x);
+    const double t38 = fabs(x_y);
+    const double t39 = fabs(x_z);
+    const int t40 = t37 <= t38 && t37 <= t39;
+    const int t41 = t38 <= t39;
+    const double t42 = t41 ? -x_z : x_y;
+    const double t43 = t40 ? x_z : (t41 ? 0.0 : t13);
+    const double t44 = t40 ? x_y : (t41 ? t13 : 0.0);
+    const double t45 = 1.0 / sqrt((t40 ? 0.0 : t42 * t42) + t43 * t43 + t44 * t44);
+    const double t46 = t43 * t45;
+    const double t47 = t42 * t45;
+    const double t48 = t44 * t45;
+    const double t49 = t15 * t46 - (t40 ? 0.0 : t12 * t47) - t16 * t48;
+    const double t50 = (t40 ? 0.0 : (t3 ? 0.0 : t14 * t47)) + t11 * t46 + t10 * t48;
+    const double t51 = t36 * (t33 * t49 - (t32 ? 0.0 : t35 * t50));
+    const double t52 = t28 * ((t40 ? 0.0 : t6 * t47) - z_y * t46 + z_z * t48);
+    const double t53 = t29 * (t33 * t50 + (t32 ? 0.0 : t35 * t49)) + t52;
+    const double t54 = x_y * t48 + x_z * t46;
+    const double t55 = (t40 ? 0.0 : x_z * t47) + x_x * t48;
+    const double t56 = x_x * t46 - (t40 ? 0.0 : x_y * t47);
+    const double t57 = t12 * t54 + t15 * t55 + t16 * t56;
+    const double t58 = t11 * t55 - (t3 ? 0.0 : t14 * t54) - t10 * t56;
+    const double t59 = t36 * (t33 * t57 - (t32 ? 0.0 : t35 * t58));
+    const double t60 = t29 * (t33 * t58 + (t32 ? 0.0 : t35 * t57));
+    const double t61 = t60 + t28 * (z_x * t54 - z_y * t55 - z_z * t56);
+    res[0] = t34 * t33;
+    res[1] = t32 ? 0.0 : t34 * t35;
     if (res_D_x != NULL) {
-        res_D_x[0] = t30 * t51 - t33 * t49;
-        res_D_x[1] = t30 * t59 - t33 * t57;
-        res_D_x[2] = t33 * t51 + t30 * t49;
-        res_D_x[3] = t33 * t59 + t30 * t57;
+        res_D_x[0] = t33 * t53 - (t32 ? 0.0 : t35 * t51);
+        res_D_x[1] = t33 * t61 - (t32 ? 0.0 : t35 * t59);
+        res_D_x[2] = (t32 ? 0.0 : t35 * t53) + t33 * t51;
+        res_D_x[3] = (t32 ? 0.0 : t35 * t61) + t33 * t59;
     }
     return 0;
 }

@@ -22,7 +22,7 @@
  *   res: 2, R2 (x, y)
  *   res_D_x: 2 x 2, derivative of res by the tangent of x
  *
- * Operations: 77 (residual only), 125 (with Jacobians)
+ * Operations: 82 (residual only), 136 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD
@@ -73,9 +73,12 @@ int liegen_factors_prior_s2_gtsam_res(
     const double t25 = 0.0 < t24 ? t24 : 1.0;
     const double t26 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
     const double t27 = t24 * t26;
-    const double t28 = liegen_factors_atan2(t27, x_x * z_x + x_y * z_y + x_z * z_z);
-    res[0] = t28 * (0.0 < t27 ? t22 / t25 : -1.0);
-    res[1] = t28 * (t23 / t25);
+    const double t28 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const double t29 = t28 < 0.0 ? 1.0 : 0.0;
+    const int t30 = t29 + t27 * 0.03125 <= t29;
+    const double t31 = liegen_factors_atan2(t27, t28);
+    res[0] = t31 * (t30 ? -1.0 : t22 / t25);
+    res[1] = t30 ? 0.0 : t31 * (t23 / t25);
     return 0;
 }
 
@@ -103,47 +106,50 @@ int liegen_factors_prior_s2_gtsam(
     const double t7 = t3 ? x_z : (t4 ? 0.0 : t6);
     const double t8 = t3 ? x_y : (t4 ? t6 : 0.0);
     const double t9 = 1.0 / sqrt((t3 ? 0.0 : t5 * t5) + t7 * t7 + t8 * t8);
-    const double t10 = t8 * t9;
-    const double t11 = t7 * t9;
-    const double t12 = t5 * t9;
-    const double t13 = z_y * (t6 * t10 - (t3 ? 0.0 : x_z * t12));
-    const double t14 = z_z * (t6 * t11 + (t3 ? 0.0 : x_y * t12));
-    const double t15 = z_x * (x_y * t10 + x_z * t11) + t13 + t14;
-    const double t16 = z_z * t10 - ((t3 ? 0.0 : z_x * t12) + z_y * t11);
+    const double t10 = t5 * t9;
+    const double t11 = t8 * t9;
+    const double t12 = z_y * ((t3 ? 0.0 : x_z * t10) + x_x * t11);
+    const double t13 = t7 * t9;
+    const double t14 = z_z * (x_x * t13 - (t3 ? 0.0 : x_y * t10));
+    const double t15 = t12 - z_x * (x_y * t11 + x_z * t13) + t14;
+    const double t16 = (t3 ? 0.0 : z_x * t10) + z_y * t13 - z_z * t11;
     const double t17 = t16 * t16 + t15 * t15;
     const int t18 = t17 < 1.1830521861667747e-271;
     const int t19 = 8.452712498170644e+270 < t17;
-    const double t20 = t18 ? 4.149515568880993e+180 : (t19 ? 2.409919865102884e-181 : 1.0);
-    const double t21 = t16 * t20;
-    const double t22 = t15 * t20;
-    const double t23 = sqrt(t21 * t21 + t22 * t22);
-    const double t24 = 0.0 < t23 ? t23 : 1.0;
-    const double t25 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
-    const double t26 = t23 * t25;
-    const int t27 = 0.0 < t26;
-    const double t28 = t27 ? t21 / t24 : -1.0;
-    const double t29 = x_x * z_x + x_y * z_y + x_z * z_z;
-    const double t30 = liegen_factors_atan2(t26, t29);
-    const double t31 = t22 / t24;
-    const double t32 = (t27 ? t30 : 1.0) / (t27 ? t26 : (0.0 < t29 ? 1.0 : 0.0));
-    const double t33 = x_z * x_z;
-    const double t34 = x_x * x_x;
-    const double t35 = x_y * x_y;
-    const double t36 = sqrt(t3 ? t35 + t33 : (t4 ? t33 + t34 : t35 + t34));
-    const double t37 = (t3 ? x_x : (t4 ? x_y : x_z)) / t36;
-    const double t38 = t16 * t37;
-    const double t39 = t29 - t15 * t37;
-    const double t40 = t32 * (t28 * t38 - t31 * t39);
-    const double t41 = t29 * (t31 * t38 + t28 * t39) + t16 * t26;
-    const double t42 = t29 * (t29 * t31) + t15 * t26;
-    const double t43 = t32 * (t29 * t28);
-    res[0] = t30 * t28;
-    res[1] = t30 * t31;
+    const double t20 = t19 ? -2.409919865102884e-181 : -1.0;
+    const double t21 = t18 ? -4.149515568880993e+180 : t20;
+    const double t22 = t16 * t21;
+    const double t23 = t15 * t21;
+    const double t24 = sqrt(t22 * t22 + t23 * t23);
+    const double t25 = 0.0 < t24 ? t24 : 1.0;
+    const double t26 = t18 ? 2.409919865102884e-181 : (t19 ? 4.149515568880993e+180 : 1.0);
+    const double t27 = t24 * t26;
+    const double t28 = x_x * z_x + x_y * z_y + x_z * z_z;
+    const int t29 = t28 < 0.0;
+    const double t30 = t29 ? 1.0 : 0.0;
+    const int t31 = t30 + t27 * 0.03125 <= t30;
+    const double t32 = t31 ? -1.0 : t22 / t25;
+    const double t33 = liegen_factors_atan2(t27, t28);
+    const double t34 = t23 / t25;
+    const double t35 = (t31 ? 1.0 : t33) / (t31 ? (t29 ? 0.0 : 1.0) : t27);
+    const double t36 = x_z * x_z;
+    const double t37 = x_x * x_x;
+    const double t38 = x_y * x_y;
+    const double t39 = sqrt(t3 ? t38 + t36 : (t4 ? t36 + t37 : t38 + t37));
+    const double t40 = (t3 ? x_x : (t4 ? x_y : x_z)) / t39;
+    const double t41 = t28 + t15 * t40;
+    const double t42 = t16 * t40;
+    const double t43 = t35 * ((t31 ? 0.0 : t34 * t41) + t32 * t42);
+    const double t44 = t28 * (t32 * t41 - (t31 ? 0.0 : t34 * t42)) - t16 * t27;
+    const double t45 = (t31 ? 0.0 : t28 * (t28 * t34)) - t15 * t27;
+    const double t46 = t35 * (t28 * t32);
+    res[0] = t33 * t32;
+    res[1] = t31 ? 0.0 : t33 * t34;
     if (res_D_x != NULL) {
-        res_D_x[0] = t28 * t41 - t31 * t40;
-        res_D_x[1] = t28 * t42 - t31 * t43;
-        res_D_x[2] = t31 * t41 + t28 * t40;
-        res_D_x[3] = t31 * t42 + t28 * t43;
+        res_D_x[0] = t32 * t44 + (t31 ? 0.0 : t34 * t43);
+        res_D_x[1] = t32 * t45 - (t31 ? 0.0 : t34 * t46);
+        res_D_x[2] = (t31 ? 0.0 : t34 * t44) - t32 * t43;
+        res_D_x[3] = (t31 ? 0.0 : t34 * t45) + t32 * t46;
     }
     return 0;
 }

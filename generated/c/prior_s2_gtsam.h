@@ -22,7 +22,7 @@
  *   res: 2, R2 (x, y)
  *   res_D_x: 2 x 2, derivative of res by the tangent of x
  *
- * Operations: 77 (residual only), 125 (with Jacobians)
+ * Operations: 82 (residual only), 136 (with Jacobians)
  * Regenerate: liegen generate -o DIR
  *
  * SPDX-License-Identifier: 0BSD

@@ -30,7 +30,7 @@
 #   res_D_x: 2 x 6, derivative of res by the tangent of x
 #   res_D_y: 2 x 3, derivative of res by the tangent of y
 #
-# Operations: 139 (residual only), 267 (with Jacobians)
+# Operations: 144 (residual only), 278 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -162,12 +162,15 @@ def _value(x: Array, y: Array, z: Array, res: Array) -> None:
     t51 = t44 * t50
     t52 = t45 * t50
     t53 = np.where(t47, 4.149515568880993e+180, 1.0)
-    t54 = np.sqrt(t52 * t52 + t51 * t51)
-    t55 = np.where(0.0 < t54, t54, 1.0)
-    t56 = t54 * np.where(t48, 2.409919865102884e-181, t53)
-    t57 = np.arctan2(t56, t26 * z_z + t27 * z_x - t28 * z_y)
-    res[0] = t57 * np.where(0.0 < t56, t52 / t55, -1.0)
-    res[1] = t57 * (t51 / t55)
+    t54 = t26 * z_z + t27 * z_x - t28 * z_y
+    t55 = np.sqrt(t52 * t52 + t51 * t51)
+    t56 = t55 * np.where(t48, 2.409919865102884e-181, t53)
+    t57 = np.where(0.0 < t55, t55, 1.0)
+    t58 = np.arctan2(t56, t54)
+    t59 = np.where(t54 < 0.0, 1.0, 0.0)
+    t60 = t59 + t56 * 0.03125 <= t59
+    res[0] = t58 * np.where(t60, -1.0, t52 / t57)
+    res[1] = np.where(t60, 0.0, t58 * (t51 / t57))
 
 
 def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y: Array) -> None:
@@ -237,66 +240,68 @@ def _jacobians(x: Array, y: Array, z: Array, res: Array, res_D_x: Array, res_D_y
     t60 = t39 * t39
     t61 = t37 * t37
     t62 = t58 * t58 + t57 * t57
-    t63 = np.where(t44, t60 + t61, np.where(t43, t61 + t59, t60 + t59))
-    t64 = 8.452712498170644e+270 < t62
-    t65 = t62 < 1.1830521861667747e-271
-    t66 = np.where(t64, -2.409919865102884e-181, -1.0)
-    t67 = np.where(t65, -4.149515568880993e+180, t66)
-    t68 = t57 * t67
-    t69 = t58 * t67
-    t70 = np.where(t64, 4.149515568880993e+180, 1.0)
-    t71 = np.where(t44, t38, np.where(t43, t39, t37)) / np.sqrt(t63)
-    t72 = t39 * z_y + (t37 * z_z + t38 * z_x)
-    t73 = np.sqrt(t69 * t69 + t68 * t68)
-    t74 = np.where(0.0 < t73, t73, 1.0)
-    t75 = t73 * np.where(t65, 2.409919865102884e-181, t70)
-    t76 = t68 / t74
-    t77 = t57 * t71 - t72
-    t78 = 0.0 < t75
-    t79 = np.where(t78, t69 / t74, -1.0)
-    t80 = t58 * t71
-    t81 = np.where(t78, t75, np.where(0.0 < t72, 1.0, 0.0))
-    t82 = np.arctan2(t75, t72)
-    t83 = np.where(t78, t82, 1.0) / t81
-    t84 = np.where(t28, 4.149515568880993e+180, 1.0)
-    t85 = t72 * (t76 * t80 - t79 * t77) - t58 * t75
-    t86 = t83 * (t76 * t77 + t79 * t80)
-    t87 = t83 * (t72 * t79)
-    t88 = t76 * (t72 * t72) - t57 * t75
-    t89 = t76 * t85 + t79 * t86
-    t90 = t76 * t88 + t79 * t87
-    t91 = 1.0 / (t35 * np.where(t29, 2.409919865102884e-181, t84))
-    t92 = t53 * t91
-    t93 = t56 * t91
-    t94 = t51 * t91
-    t95 = t55 * t91
-    t96 = t52 * t91
-    t97 = t54 * t91
-    t98 = t93 * t90 - t94 * t89
-    t99 = t95 * t90 + t96 * t89
-    t100 = np.where(t44, 0.0, t92 * t89) - t97 * t90
-    t101 = t76 * t86 - t79 * t85
-    t102 = t76 * t87 - t79 * t88
-    t103 = t102 * t93 - t101 * t94
-    t104 = t101 * t96 + t102 * t95
-    t105 = np.where(t44, 0.0, t101 * t92) - t102 * t97
-    res[0] = t82 * t79
-    res[1] = -(t82 * t76)
-    res_D_x[0, 0] = t25 * t103 - t26 * t104
-    res_D_x[0, 1] = t24 * t104 - t25 * t105
-    res_D_x[0, 2] = t26 * t105 - t24 * t103
-    res_D_x[0, 3] = t105
-    res_D_x[0, 4] = t103
-    res_D_x[0, 5] = t104
-    res_D_x[1, 0] = t25 * t98 - t26 * t99
-    res_D_x[1, 1] = t24 * t99 - t25 * t100
-    res_D_x[1, 2] = t26 * t100 - t24 * t98
-    res_D_x[1, 3] = t100
-    res_D_x[1, 4] = t98
-    res_D_x[1, 5] = t99
-    res_D_y[0, 0] = t9 * t103 - t5 * t104 - t22 * t105
-    res_D_y[0, 1] = t23 * t103 - t13 * t104 - t8 * t105
-    res_D_y[0, 2] = t4 * t105 - (t21 * t104 + t14 * t103)
-    res_D_y[1, 0] = t9 * t98 - t5 * t99 - t22 * t100
-    res_D_y[1, 1] = t23 * t98 - t13 * t99 - t8 * t100
-    res_D_y[1, 2] = t4 * t100 - (t21 * t99 + t14 * t98)
+    t63 = 8.452712498170644e+270 < t62
+    t64 = t62 < 1.1830521861667747e-271
+    t65 = np.where(t63, -2.409919865102884e-181, -1.0)
+    t66 = np.where(t64, -4.149515568880993e+180, t65)
+    t67 = t57 * t66
+    t68 = t58 * t66
+    t69 = np.where(t63, 4.149515568880993e+180, 1.0)
+    t70 = np.where(t44, t60 + t61, np.where(t43, t61 + t59, t60 + t59))
+    t71 = t39 * z_y + (t37 * z_z + t38 * z_x)
+    t72 = np.sqrt(t68 * t68 + t67 * t67)
+    t73 = t72 * np.where(t64, 2.409919865102884e-181, t69)
+    t74 = np.where(0.0 < t72, t72, 1.0)
+    t75 = np.where(t44, t38, np.where(t43, t39, t37)) / np.sqrt(t70)
+    t76 = t71 < 0.0
+    t77 = np.where(t76, 1.0, 0.0)
+    t78 = t77 + t73 * 0.03125 <= t77
+    t79 = t67 / t74
+    t80 = t58 * t75
+    t81 = t57 * t75 - t71
+    t82 = np.where(t78, -1.0, t68 / t74)
+    t83 = np.where(t78, np.where(t76, 0.0, 1.0), t73)
+    t84 = np.arctan2(t73, t71)
+    t85 = np.where(t78, 1.0, t84) / t83
+    t86 = np.where(t28, 4.149515568880993e+180, 1.0)
+    t87 = t71 * (np.where(t78, 0.0, t79 * t80) - t82 * t81) - t58 * t73
+    t88 = np.where(t78, 0.0, t79 * (t71 * t71)) - t57 * t73
+    t89 = t85 * (np.where(t78, 0.0, t79 * t81) + t82 * t80)
+    t90 = t85 * (t71 * t82)
+    t91 = np.where(t78, 0.0, t79 * t87) + t82 * t89
+    t92 = np.where(t78, 0.0, t79 * t88) + t82 * t90
+    t93 = 1.0 / (t35 * np.where(t29, 2.409919865102884e-181, t86))
+    t94 = t53 * t93
+    t95 = t56 * t93
+    t96 = t51 * t93
+    t97 = t55 * t93
+    t98 = t52 * t93
+    t99 = t54 * t93
+    t100 = t95 * t92 - t96 * t91
+    t101 = t98 * t91 + t97 * t92
+    t102 = np.where(t44, 0.0, t94 * t91) - t99 * t92
+    t103 = np.where(t78, 0.0, t79 * t89) - t82 * t87
+    t104 = np.where(t78, 0.0, t79 * t90) - t82 * t88
+    t105 = t104 * t95 - t103 * t96
+    t106 = t103 * t98 + t104 * t97
+    t107 = np.where(t44, 0.0, t103 * t94) - t104 * t99
+    res[0] = t84 * t82
+    res[1] = -np.where(t78, 0.0, t84 * t79)
+    res_D_x[0, 0] = t25 * t105 - t26 * t106
+    res_D_x[0, 1] = t24 * t106 - t25 * t107
+    res_D_x[0, 2] = t26 * t107 - t24 * t105
+    res_D_x[0, 3] = t107
+    res_D_x[0, 4] = t105
+    res_D_x[0, 5] = t106
+    res_D_x[1, 0] = t25 * t100 - t26 * t101
+    res_D_x[1, 1] = t24 * t101 - t25 * t102
+    res_D_x[1, 2] = t26 * t102 - t24 * t100
+    res_D_x[1, 3] = t102
+    res_D_x[1, 4] = t100
+    res_D_x[1, 5] = t101
+    res_D_y[0, 0] = t9 * t105 - t5 * t106 - t22 * t107
+    res_D_y[0, 1] = t23 * t105 - t13 * t106 - t8 * t107
+    res_D_y[0, 2] = t4 * t107 - (t21 * t106 + t14 * t105)
+    res_D_y[1, 0] = t9 * t100 - t5 * t101 - t22 * t102
+    res_D_y[1, 1] = t23 * t100 - t13 * t101 - t8 * t102
+    res_D_y[1, 2] = t4 * t102 - (t21 * t101 + t14 * t100)

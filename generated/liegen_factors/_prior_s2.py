@@ -21,7 +21,7 @@
 #   res: 2, R2 (x, y)
 #   res_D_x: 2 x 2, derivative of res by the tangent of x
 #
-# Operations: 77 (residual only), 185 (with Jacobians)
+# Operations: 82 (residual only), 197 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -116,9 +116,12 @@ def _value(x: Array, z: Array, res: Array) -> None:
     t26 = np.where(0.0 < t25, t25, 1.0)
     t27 = np.where(t20, 4.149515568880993e+180, 1.0)
     t28 = t25 * np.where(t19, 2.409919865102884e-181, t27)
-    t29 = np.arctan2(t28, x_x * z_x + x_y * z_y + x_z * z_z)
-    res[0] = t29 * np.where(0.0 < t28, t23 / t26, 1.0)
-    res[1] = t29 * (t24 / t26)
+    t29 = x_x * z_x + x_y * z_y + x_z * z_z
+    t30 = np.where(t29 < 0.0, 1.0, 0.0)
+    t31 = t30 + t28 * 0.03125 <= t30
+    t32 = np.arctan2(t28, t29)
+    res[0] = t32 * np.where(t31, 1.0, t23 / t26)
+    res[1] = np.where(t31, 0.0, t32 * (t24 / t26))
 
 
 def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
@@ -155,43 +158,45 @@ def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
     t28 = np.where(0.0 < t27, t27, 1.0)
     t29 = np.where(t22, 4.149515568880993e+180, 1.0)
     t30 = t27 * np.where(t21, 2.409919865102884e-181, t29)
-    t31 = 0.0 < t30
-    t32 = np.where(t31, t25 / t28, 1.0)
-    t33 = x_x * z_x + x_y * z_y + x_z * z_z
-    t34 = np.arctan2(t30, t33)
-    t35 = t26 / t28
-    t36 = np.where(t31, t30, np.where(0.0 < t33, 1.0, 0.0))
-    t37 = np.where(t31, t34, 1.0) / t36
-    t38 = np.abs(x_x)
-    t39 = np.abs(x_y)
-    t40 = np.abs(x_z)
-    t41 = (t38 <= t39) & (t38 <= t40)
-    t42 = t39 <= t40
-    t43 = np.where(t42, -x_z, x_y)
-    t44 = np.where(t41, x_z, np.where(t42, 0.0, t14))
-    t45 = np.where(t41, x_y, np.where(t42, t14, 0.0))
-    t46 = np.sqrt(np.where(t41, 0.0, t43 * t43) + t44 * t44 + t45 * t45)
-    t47 = 1.0 / t46
-    t48 = t44 * t47
-    t49 = t43 * t47
-    t50 = t45 * t47
-    t51 = t16 * t48 - np.where(t41, 0.0, t13 * t49) - t17 * t50
-    t52 = np.where(t41, 0.0, np.where(t3, 0.0, t15 * t49)) + t12 * t48
-    t53 = t52 + t11 * t50
-    t54 = t37 * (t32 * t51 - t35 * t53)
-    t55 = t30 * (np.where(t41, 0.0, t6 * t49) - z_y * t48 + z_z * t50)
-    t56 = t33 * (t32 * t53 + t35 * t51) + t55
-    t57 = x_y * t50 + x_z * t48
-    t58 = np.where(t41, 0.0, x_z * t49) + x_x * t50
-    t59 = x_x * t48 - np.where(t41, 0.0, x_y * t49)
-    t60 = t13 * t57 + t16 * t58 + t17 * t59
-    t61 = t12 * t58 - np.where(t3, 0.0, t15 * t57) - t11 * t59
-    t62 = t37 * (t32 * t60 - t35 * t61)
-    t63 = t30 * (z_x * t57 - z_y * t58 - z_z * t59)
-    t64 = t33 * (t32 * t61 + t35 * t60) + t63
-    res[0] = t34 * t32
-    res[1] = t34 * t35
-    res_D_x[0, 0] = t32 * t56 - t35 * t54
-    res_D_x[0, 1] = t32 * t64 - t35 * t62
-    res_D_x[1, 0] = t35 * t56 + t32 * t54
-    res_D_x[1, 1] = t35 * t64 + t32 * t62
+    t31 = x_x * z_x + x_y * z_y + x_z * z_z
+    t32 = t31 < 0.0
+    t33 = np.where(t32, 1.0, 0.0)
+    t34 = t33 + t30 * 0.03125 <= t33
+    t35 = np.where(t34, 1.0, t25 / t28)
+    t36 = np.arctan2(t30, t31)
+    t37 = t26 / t28
+    t38 = np.where(t34, np.where(t32, 0.0, 1.0), t30)
+    t39 = np.where(t34, 1.0, t36) / t38
+    t40 = np.abs(x_x)
+    t41 = np.abs(x_y)
+    t42 = np.abs(x_z)
+    t43 = (t40 <= t41) & (t40 <= t42)
+    t44 = t41 <= t42
+    t45 = np.where(t44, -x_z, x_y)
+    t46 = np.where(t43, x_z, np.where(t44, 0.0, t14))
+    t47 = np.where(t43, x_y, np.where(t44, t14, 0.0))
+    t48 = np.sqrt(np.where(t43, 0.0, t45 * t45) + t46 * t46 + t47 * t47)
+    t49 = 1.0 / t48
+    t50 = t46 * t49
+    t51 = t45 * t49
+    t52 = t47 * t49
+    t53 = t16 * t50 - np.where(t43, 0.0, t13 * t51) - t17 * t52
+    t54 = np.where(t43, 0.0, np.where(t3, 0.0, t15 * t51)) + t12 * t50
+    t55 = t54 + t11 * t52
+    t56 = t39 * (t35 * t53 - np.where(t34, 0.0, t37 * t55))
+    t57 = t30 * (np.where(t43, 0.0, t6 * t51) - z_y * t50 + z_z * t52)
+    t58 = t31 * (t35 * t55 + np.where(t34, 0.0, t37 * t53)) + t57
+    t59 = x_y * t52 + x_z * t50
+    t60 = np.where(t43, 0.0, x_z * t51) + x_x * t52
+    t61 = x_x * t50 - np.where(t43, 0.0, x_y * t51)
+    t62 = t13 * t59 + t16 * t60 + t17 * t61
+    t63 = t12 * t60 - np.where(t3, 0.0, t15 * t59) - t11 * t61
+    t64 = t39 * (t35 * t62 - np.where(t34, 0.0, t37 * t63))
+    t65 = t31 * (t35 * t63 + np.where(t34, 0.0, t37 * t62))
+    t66 = t65 + t30 * (z_x * t59 - z_y * t60 - z_z * t61)
+    res[0] = t36 * t35
+    res[1] = np.where(t34, 0.0, t36 * t37)
+    res_D_x[0, 0] = t35 * t58 - np.where(t34, 0.0, t37 * t56)
+    res_D_x[0, 1] = t35 * t66 - np.where(t34, 0.0, t37 * t64)
+    res_D_x[1, 0] = np.where(t34, 0.0, t37 * t58) + t35 * t56
+    res_D_x[1, 1] = np.where(t34, 0.0, t37 * t66) + t35 * t64

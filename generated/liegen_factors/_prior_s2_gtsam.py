@@ -21,7 +21,7 @@
 #   res: 2, R2 (x, y)
 #   res_D_x: 2 x 2, derivative of res by the tangent of x
 #
-# Operations: 77 (residual only), 125 (with Jacobians)
+# Operations: 82 (residual only), 136 (with Jacobians)
 # Regenerate: liegen generate -o DIR
 #
 # SPDX-License-Identifier: 0BSD
@@ -116,9 +116,12 @@ def _value(x: Array, z: Array, res: Array) -> None:
     t26 = np.where(0.0 < t25, t25, 1.0)
     t27 = np.where(t20, 4.149515568880993e+180, 1.0)
     t28 = t25 * np.where(t19, 2.409919865102884e-181, t27)
-    t29 = np.arctan2(t28, x_x * z_x + x_y * z_y + x_z * z_z)
-    res[0] = t29 * np.where(0.0 < t28, t23 / t26, -1.0)
-    res[1] = t29 * (t24 / t26)
+    t29 = x_x * z_x + x_y * z_y + x_z * z_z
+    t30 = np.where(t29 < 0.0, 1.0, 0.0)
+    t31 = t30 + t28 * 0.03125 <= t30
+    t32 = np.arctan2(t28, t29)
+    res[0] = t32 * np.where(t31, -1.0, t23 / t26)
+    res[1] = np.where(t31, 0.0, t32 * (t24 / t26))
 
 
 def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
@@ -135,45 +138,47 @@ def _jacobians(x: Array, z: Array, res: Array, res_D_x: Array) -> None:
     t8 = np.where(t3, x_y, np.where(t4, t6, 0.0))
     t9 = np.sqrt(np.where(t3, 0.0, t5 * t5) + t7 * t7 + t8 * t8)
     t10 = 1.0 / t9
-    t11 = t8 * t10
-    t12 = t7 * t10
-    t13 = t5 * t10
-    t14 = z_y * (t6 * t11 - np.where(t3, 0.0, x_z * t13))
-    t15 = z_z * (t6 * t12 + np.where(t3, 0.0, x_y * t13))
-    t16 = z_x * (x_y * t11 + x_z * t12) + t14 + t15
-    t17 = z_z * t11 - (np.where(t3, 0.0, z_x * t13) + z_y * t12)
+    t11 = t5 * t10
+    t12 = t8 * t10
+    t13 = z_y * (np.where(t3, 0.0, x_z * t11) + x_x * t12)
+    t14 = t7 * t10
+    t15 = z_z * (x_x * t14 - np.where(t3, 0.0, x_y * t11))
+    t16 = t13 - z_x * (x_y * t12 + x_z * t14) + t15
+    t17 = np.where(t3, 0.0, z_x * t11) + z_y * t14 - z_z * t12
     t18 = t17 * t17 + t16 * t16
     t19 = t18 < 1.1830521861667747e-271
     t20 = 8.452712498170644e+270 < t18
-    t21 = np.where(t20, 2.409919865102884e-181, 1.0)
-    t22 = np.where(t19, 4.149515568880993e+180, t21)
+    t21 = np.where(t20, -2.409919865102884e-181, -1.0)
+    t22 = np.where(t19, -4.149515568880993e+180, t21)
     t23 = t17 * t22
     t24 = t16 * t22
     t25 = np.sqrt(t23 * t23 + t24 * t24)
     t26 = np.where(0.0 < t25, t25, 1.0)
     t27 = np.where(t20, 4.149515568880993e+180, 1.0)
     t28 = t25 * np.where(t19, 2.409919865102884e-181, t27)
-    t29 = 0.0 < t28
-    t30 = np.where(t29, t23 / t26, -1.0)
-    t31 = x_x * z_x + x_y * z_y + x_z * z_z
-    t32 = np.arctan2(t28, t31)
-    t33 = t24 / t26
-    t34 = np.where(t29, t28, np.where(0.0 < t31, 1.0, 0.0))
-    t35 = np.where(t29, t32, 1.0) / t34
-    t36 = x_z * x_z
-    t37 = x_x * x_x
-    t38 = x_y * x_y
-    t39 = np.where(t3, t38 + t36, np.where(t4, t36 + t37, t38 + t37))
-    t40 = np.where(t3, x_x, np.where(t4, x_y, x_z)) / np.sqrt(t39)
-    t41 = t17 * t40
-    t42 = t31 - t16 * t40
-    t43 = t35 * (t30 * t41 - t33 * t42)
-    t44 = t31 * (t33 * t41 + t30 * t42) + t17 * t28
-    t45 = t31 * (t31 * t33) + t16 * t28
-    t46 = t35 * (t31 * t30)
-    res[0] = t32 * t30
-    res[1] = t32 * t33
-    res_D_x[0, 0] = t30 * t44 - t33 * t43
-    res_D_x[0, 1] = t30 * t45 - t33 * t46
-    res_D_x[1, 0] = t33 * t44 + t30 * t43
-    res_D_x[1, 1] = t33 * t45 + t30 * t46
+    t29 = x_x * z_x + x_y * z_y + x_z * z_z
+    t30 = t29 < 0.0
+    t31 = np.where(t30, 1.0, 0.0)
+    t32 = t31 + t28 * 0.03125 <= t31
+    t33 = np.where(t32, -1.0, t23 / t26)
+    t34 = np.arctan2(t28, t29)
+    t35 = t24 / t26
+    t36 = np.where(t32, np.where(t30, 0.0, 1.0), t28)
+    t37 = np.where(t32, 1.0, t34) / t36
+    t38 = x_z * x_z
+    t39 = x_x * x_x
+    t40 = x_y * x_y
+    t41 = np.where(t3, t40 + t38, np.where(t4, t38 + t39, t40 + t39))
+    t42 = np.where(t3, x_x, np.where(t4, x_y, x_z)) / np.sqrt(t41)
+    t43 = t29 + t16 * t42
+    t44 = t17 * t42
+    t45 = t37 * (np.where(t32, 0.0, t35 * t43) + t33 * t44)
+    t46 = t29 * (t33 * t43 - np.where(t32, 0.0, t35 * t44)) - t17 * t28
+    t47 = np.where(t32, 0.0, t29 * (t29 * t35)) - t16 * t28
+    t48 = t37 * (t29 * t33)
+    res[0] = t34 * t33
+    res[1] = np.where(t32, 0.0, t34 * t35)
+    res_D_x[0, 0] = t33 * t46 + np.where(t32, 0.0, t35 * t45)
+    res_D_x[0, 1] = t33 * t47 - np.where(t32, 0.0, t35 * t48)
+    res_D_x[1, 0] = np.where(t32, 0.0, t35 * t46) - t33 * t45
+    res_D_x[1, 1] = np.where(t32, 0.0, t35 * t47) + t33 * t48

@@ -57,10 +57,10 @@
 # Operations:
 #   bearing_se2: 30, with Jacobians 51
 #   bearing_se2_r2: 30, with Jacobians 45
-#   bearing_se3: 140, with Jacobians 379
-#   bearing_se3_gtsam: 139, with Jacobians 319
-#   bearing_se3_r3: 140, with Jacobians 328
-#   bearing_se3_r3_gtsam: 139, with Jacobians 267
+#   bearing_se3: 145, with Jacobians 391
+#   bearing_se3_gtsam: 144, with Jacobians 330
+#   bearing_se3_r3: 145, with Jacobians 340
+#   bearing_se3_r3_gtsam: 144, with Jacobians 278
 #   between_r2: 4, with Jacobians 4
 #   between_r3: 6, with Jacobians 6
 #   between_se2: 53, with Jacobians 70
@@ -74,8 +74,8 @@
 #   sfm_cal3_s2: 52, with Jacobians 98
 #   prior_r2: 2, with Jacobians 2
 #   prior_r3: 3, with Jacobians 3
-#   prior_s2: 77, with Jacobians 185
-#   prior_s2_gtsam: 77, with Jacobians 125
+#   prior_s2: 82, with Jacobians 197
+#   prior_s2_gtsam: 82, with Jacobians 136
 #   prior_se2: 39, with Jacobians 47
 #   prior_se3: 150, with Jacobians 217
 #   prior_so2: 7, with Jacobians 7
