@@ -97,12 +97,13 @@ def test_a_program_that_is_not_there(tmp_path):
 
 
 def test_some_at_once_and_none_after_a_failure(tmp_path):
-    log = tmp_path / "log"
-    commands = [["sh", "-c", f"echo {k} >> {log}; sleep 0.2; exit {int(k == 1)}"] for k in range(5)]
-    start = time.monotonic()
-    done = run_all(commands, at_once=2)
+    """The first waits until the second has failed, so they run at once; the others are not started."""
+    log, failed = tmp_path / "log", tmp_path / "failed"
+    waits = f"echo 0 >> {log}; while [ ! -e {failed} ]; do sleep 0.05; done; sleep 0.3"
+    fails = f"echo 1 >> {log}; touch {failed}; exit 1"
+    others = [["sh", "-c", f"echo {k} >> {log}"] for k in (2, 3, 4)]
+    done = run_all([["sh", "-c", waits], ["sh", "-c", fails], *others], at_once=2, limit=60)
     assert [d.code for d in done] == [0, 1]
-    assert time.monotonic() - start < 5
     assert sorted(log.read_text().split()) == ["0", "1"]
 
 
