@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import permutations
 
 from liegen.charts import Preset, form_chart
@@ -10,6 +9,7 @@ from liegen.manifolds import Node, Operation
 from liegen.manifolds.form import GroupForm
 from liegen.manifolds.relative import interpolation
 from liegen.trace import Graph
+from liegen.trace.graph import rebuilt
 
 
 def fused(graph: Graph) -> Graph:
@@ -17,21 +17,7 @@ def fused(graph: Graph) -> Graph:
 
     The same graph if there is none. Only for Jacobians: nodes that are gone are not shown any more.
     """
-    place: dict[int, Node] = {}
-    changed = False
-    for node in graph.nodes():
-        operands = tuple(place[id(n)] for n in node.operands)
-        same = all(a is b for a, b in zip(operands, node.operands, strict=True))
-        found = _local_between(node, operands) or _interpolation(node, operands)
-        changed = changed or found is not None
-        place[id(node)] = found or (node if same else Node(node.operation, operands, node.site))
-    if not changed:
-        return graph
-    return replace(
-        graph,
-        outputs=tuple((name, place[id(node)]) for name, node in graph.outputs),
-        domain=tuple(replace(d, condition=place[id(d.condition)]) for d in graph.domain),
-    )
+    return rebuilt(graph, lambda n, operands: _local_between(n, operands) or _interpolation(n, operands))
 
 
 def _local_between(node: Node, operands: tuple[Node, ...]) -> Node | None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from liegen.manifolds import Node
 from liegen.manifolds.node import node_of
 from liegen.trace import Graph
+from liegen.trace.graph import rebuilt
 
 #: The action of a group element on a vector and that of the inverse element.
 ACTIONS = {"transform_from": "transform_to", "rotate": "unrotate"}
@@ -22,22 +22,12 @@ def nested(graph: Graph) -> Graph:
     Products are those of ``compose``, ``between`` and ``inverse``, and products of these. The same graph if
     none acts on a vector. Nodes that are gone are not shown any more.
     """
-    place: dict[int, Node] = {}
-    changed = False
-    for node in graph.nodes():
-        operands = tuple(place[id(n)] for n in node.operands)
-        same = all(a is b for a, b in zip(operands, node.operands, strict=True))
-        moved = node if same else Node(node.operation, operands, node.site)
-        if node.operation.name in INVERSE and _is_product(operands[0]):
-            moved, changed = _one_after_the_other(moved), True
-        place[id(node)] = moved
-    if not changed:
-        return graph
-    return replace(
-        graph,
-        outputs=tuple((name, place[id(node)]) for name, node in graph.outputs),
-        domain=tuple(replace(d, condition=place[id(d.condition)]) for d in graph.domain),
-    )
+    return rebuilt(graph, _nested)
+
+
+def _nested(node: Node, operands: tuple[Node, ...]) -> Node | None:
+    acts = node.operation.name in INVERSE and _is_product(operands[0])
+    return _one_after_the_other(node.on(operands)) if acts else None
 
 
 def _is_product(node: Node) -> bool:

@@ -10,7 +10,7 @@ import os
 import sys
 import sysconfig
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self, TypeVar
@@ -65,6 +65,11 @@ class Node:
     def manifold(self) -> type[Value]:
         """The class of the result."""
         return self.operation.result
+
+    def on(self, operands: tuple[Node, ...]) -> Node:
+        """The same operation on other operands; the node itself where they are the same ones."""
+        same = all(a is b for a, b in zip(operands, self.operands, strict=True))
+        return self if same else replace(self, operands=operands)
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,8 +69,7 @@ def replaced(graph: Graph, old: Node, new: Node) -> Graph:
     place: dict[int, Node] = {}
     for node in topological(roots):
         operands = tuple(place[id(n)] for n in node.operands)
-        same = all(a is b for a, b in zip(operands, node.operands, strict=True))
-        place[id(node)] = new if node is old else node if same else replace(node, operands=operands)
+        place[id(node)] = new if node is old else node.on(operands)
 
     def call(c: Call) -> Call:
         arguments = tuple(replace(a, node=place[id(a.node)]) for a in c.arguments)

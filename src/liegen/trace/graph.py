@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from liegen.charts import GTSAM, Preset
@@ -94,6 +94,27 @@ class Graph:
     @cached_property
     def _nodes(self) -> tuple[Node, ...]:
         return topological([node for _, node in self.outputs] + [d.condition for d in self.domain])
+
+
+def rebuilt(graph: Graph, change: Callable[[Node, tuple[Node, ...]], Node | None]) -> Graph:
+    """The graph with another node where ``change`` gives one for a node and its new operands.
+
+    The same graph where ``change`` never does. Nodes that are gone are not shown any more.
+    """
+    place: dict[int, Node] = {}
+    changed = False
+    for node in graph.nodes():
+        operands = tuple(place[id(n)] for n in node.operands)
+        found = change(node, operands)
+        changed = changed or found is not None
+        place[id(node)] = node.on(operands) if found is None else found
+    if not changed:
+        return graph
+    return replace(
+        graph,
+        outputs=tuple((name, place[id(node)]) for name, node in graph.outputs),
+        domain=tuple(replace(d, condition=place[id(d.condition)]) for d in graph.domain),
+    )
 
 
 def topological(roots: Iterable[Node]) -> tuple[Node, ...]:
