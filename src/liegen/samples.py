@@ -193,10 +193,10 @@ def negated(values: Mapping[str, Value], draw: Draw, *, always: bool = False) ->
     chosen = {name for name in names if draw.uniform(0, 1) < 0.5}
     if always and names and not chosen:
         chosen = {names[int(draw.uniform(0, len(names)))]}
-    return {name: _other_quaternion(v) if name in chosen else v for name, v in values.items()}
+    return {name: other_quaternion(v) if name in chosen else v for name, v in values.items()}
 
 
-def _other_quaternion(v: Value) -> Value:
+def other_quaternion(v: Value) -> Value:
     """The same element with -q for each of its quaternions."""
     coords = list(v.coords)
     for start in v.form.quaternions:

@@ -27,6 +27,8 @@ NOTICE = 2.0
 #: Bytes that a program may print.
 MOST_OUTPUT = 32 << 20
 _PAUSE = 0.005
+#: ``process_group`` of a program that is ended with all that it starts.
+OWN_GROUP = 0 if os.name == "posix" else -1
 
 
 class TimeLimitError(ToolError):
@@ -136,7 +138,7 @@ def run_all(
                         _check(job, seconds, fixed=limit is not None)
                         continue
                     del running[place]
-                    _end(job)  # what it left behind
+                    end_group(job.process)  # what it left behind
                     done[place] = _done(job)
                     if done[place].failed:
                         waiting.clear()
@@ -148,7 +150,7 @@ def run_all(
                     time.sleep(min(20 * _PAUSE, max(_PAUSE, passed / 20)))
         finally:
             for job in running.values():
-                _end(job)
+                end_group(job.process)
                 job.process.wait()
     return tuple(done[place] for place in sorted(done))
 
@@ -162,7 +164,7 @@ def _started(
         process = subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, cwd=cwd,
             env=None if env is None else {**os.environ, **env},
-            process_group=0 if os.name == "posix" else -1,
+            process_group=OWN_GROUP,
         )  # fmt: skip
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
@@ -184,13 +186,13 @@ def _check(job: _Running, seconds: float, *, fixed: bool) -> None:
         )
 
 
-def _end(job: _Running) -> None:
-    """Kill the program and all that it started and left in its group."""
+def end_group(process: subprocess.Popen[bytes]) -> None:
+    """Kill a program that was started with ``OWN_GROUP``, and all that it started and left in its group."""
     if os.name == "posix":
         with suppress(ProcessLookupError, PermissionError):
-            os.killpg(job.process.pid, signal.SIGKILL)
-    elif job.process.poll() is None:
-        job.process.kill()
+            os.killpg(process.pid, signal.SIGKILL)
+    elif process.poll() is None:
+        process.kill()
 
 
 def _done(job: _Running) -> Done:

@@ -10,7 +10,7 @@ import numpy as np
 from liegen.charts import form_chart
 from liegen.define import Function
 
-from .points import Array, Sampled
+from .points import Array, Sampled, columns_of
 
 #: Step of the differences of fourth order that PlusJacobian is taken with.
 _STEP = 1e-3
@@ -24,7 +24,6 @@ def as_tangent(function: Function[..., Any], held: Sampled) -> tuple[Sampled, tu
     """
     found: list[Array] = [held.found[0]]
     notes = [""]
-    first = np.flatnonzero(np.r_[True, held.owners[1:] != held.owners[:-1]])
     for k, p in enumerate(function.graph.variables, start=1):
         array, dim = held.found[k], p.manifold.form.dim
         if array.shape[-1] == dim:
@@ -40,7 +39,7 @@ def as_tangent(function: Function[..., Any], held: Sampled) -> tuple[Sampled, tu
                 f"{dim} tangent coordinates and {size - dim} of zeros"
             )
             continue
-        plus = _plus_jacobian(p, held)[first]
+        plus = _plus_jacobian(p, held)[held.firsts]
         found.append(array @ plus)
         notes.append(
             f"it is by the {size} stored numbers of {p.name} (ambient, as J * MinusJacobian); times "
@@ -56,8 +55,7 @@ def _plus_jacobian(p: Any, held: Sampled) -> Array:
     x = held.values[p.name].coords
 
     def moved(d: Array) -> Array:
-        stored = p.storage.write(side.retract(x, tuple(np.float64(e) for e in d)))
-        return np.stack([np.broadcast_to(np.asarray(c, float), held.points) for c in stored], axis=-1)
+        return columns_of(p.storage.write(side.retract(x, tuple(np.float64(e) for e in d))), held.points)
 
     columns = [
         (8 * (moved(_STEP * e) - moved(-_STEP * e)) - (moved(2 * _STEP * e) - moved(-2 * _STEP * e)))

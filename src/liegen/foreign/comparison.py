@@ -191,8 +191,7 @@ def _one_chart(found: Explanation) -> bool:
 
 def _worst(subject: Subject) -> Finding:
     held = subject.sampled
-    first = np.flatnonzero(np.r_[True, held.owners[1:] != held.owners[:-1]])
-    expected, found = subject.expected[first], subject.found
+    expected, found = subject.expected[held.firsts], subject.found
     best = expected.copy()
     for k in np.flatnonzero(held.near_jump):  # the side of the jump that is nearer
         sides = subject.expected[held.owners == k]
@@ -201,7 +200,9 @@ def _worst(subject: Subject) -> Finding:
         errors = np.abs(found - best) / np.maximum(1.0, np.abs(best).max(axis=(1, 2), keepdims=True))
     errors = np.where(np.isfinite(found), errors, np.inf)
     k, i, j = (int(n) for n in np.unravel_index(int(np.argmax(errors)), errors.shape))
-    values = ", ".join(f"{n} = {np.asarray(v).tolist()}" for n, v in at(held.values, int(first[k])).items())
+    values = ", ".join(
+        f"{n} = {np.asarray(v).tolist()}" for n, v in at(held.values, int(held.firsts[k])).items()
+    )
     told = f" (it raised: {held.raised[k]})" if held.raised[k] else ""
     entry = (i,) if subject.variable is None else (i, j)
     return Finding(
@@ -220,8 +221,7 @@ def _with_place(
 ) -> Finding:
     held = subject.sampled
     misses = ~every(right)
-    first = np.flatnonzero(np.r_[True, held.owners[1:] != held.owners[:-1]])
-    expected = applied(found.differences, subject.expected)[first]
+    expected = applied(found.differences, subject.expected)[held.firsts]
     wrong = ~right & misses[:, None, None]
     some: NDArray[np.bool_] = np.asarray(wrong[misses].any(axis=0), dtype=bool)
     p = subject.variable

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from liegen.manifolds import Group, Value, Vector
+from liegen.manifolds import Group, Vector
 
 from . import tangents
-from .points import AnyFunction, Array, Sampled, Values, evaluated
+from .points import AnyFunction, Array, Sampled, Values, at, evaluated, some
 
 Mask = NDArray[np.bool_]
 #: Whether the foreign function is right at a point; None where there is nothing to compare.
@@ -51,12 +51,14 @@ def features(function: AnyFunction) -> Iterator[Feature]:
     for a, b in combinations(groups, 2):
         if manifolds[a] is manifolds[b] and tangents.turning(manifolds[a].form).any():
             yield Feature(
-                f"the rotation angle between {a} and {b}", " rad", lambda _, v, a=a, b=b: _between(v[a], v[b])
+                f"the rotation angle between {a} and {b}",
+                " rad",
+                lambda _, v, a=a, b=b: _between(v[a], v[b]),
             )
     yield Feature(f"the length of {output}", "", lambda f, v: np.linalg.norm(evaluated(f, v)[0], axis=1))
     for name, manifold in manifolds.items():
         if issubclass(manifold, Vector):
-            yield Feature(f"the length of {name}", "", lambda _, v, n=name: _length(v[n]))
+            yield Feature(f"the length of {name}", "", lambda _, v, n=name: _norms(v[n].coords))
 
 
 def _angle(x: Any) -> Array:
@@ -66,17 +68,13 @@ def _angle(x: Any) -> Array:
     return _norms(turned)
 
 
-def _norms(coords: Sequence[Any]) -> Array:
-    columns = np.stack(np.broadcast_arrays(*coords), axis=-1).astype(np.float64)
-    return np.atleast_1d(np.linalg.norm(columns, axis=-1))
-
-
 def _between(a: Any, b: Any) -> Array:
     return _angle(a.between(b))
 
 
-def _length(v: Value) -> Array:
-    return _norms(v.coords)
+def _norms(coords: Sequence[Any]) -> Array:
+    columns = np.stack(np.broadcast_arrays(*coords), axis=-1).astype(np.float64)
+    return np.atleast_1d(np.linalg.norm(columns, axis=-1))
 
 
 def condition(function: AnyFunction, sampled: Sampled, wrong: Mask, judge: Judge | None) -> str:
@@ -84,9 +82,7 @@ def condition(function: AnyFunction, sampled: Sampled, wrong: Mask, judge: Judge
 
     ``judge`` finds the threshold between a wrong and a right sample; None leaves it roughly known.
     """
-    firsts = np.flatnonzero(np.r_[True, sampled.owners[1:] != sampled.owners[:-1]])
-    values = {n: type(v).holding([np.broadcast_to(c, sampled.points)[firsts] for c in v.coords])
-              for n, v in sampled.values.items()}  # fmt: skip
+    values = some(sampled.values, sampled.firsts)
     negative = _negative_quaternion(values, wrong)
     if negative:
         return negative
@@ -127,13 +123,8 @@ def _below(
         return f"where {feature.name} is {'0' if size < 1e-13 else f'{_short(size)} or less'}"
     threshold = float(numbers[good])
     if judge is not None:
-        ends = _point(values, bad), _point(values, good)
-        threshold = _threshold(function, feature, *ends, judge) or threshold
+        threshold = _threshold(function, feature, at(values, bad), at(values, good), judge) or threshold
     return f"where {feature.name} is below {_short(threshold)}{feature.unit}"
-
-
-def _point(values: Values, k: int) -> dict[str, Any]:
-    return {n: type(v).holding([np.float64(c[k]) for c in v.coords]) for n, v in values.items()}
 
 
 def _short(number: float) -> str:

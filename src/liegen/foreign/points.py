@@ -34,6 +34,20 @@ def batch(values: Sequence[Values]) -> dict[str, Value]:
     return stacked
 
 
+def columns_of(scalars: Sequence[Any], points: int) -> Array:
+    """Scalars, each a number or an array (P,), as the columns of an array (P, n)."""
+    return np.stack([np.broadcast_to(np.asarray(c, dtype=np.float64), points) for c in scalars], axis=-1)
+
+
+def some(values: Values, chosen: NDArray[Any]) -> dict[str, Value]:
+    """The values of some points of a batch, by their indices or by a mask."""
+    points = size_of(values)
+    return {
+        name: type(v).holding([np.broadcast_to(c, points)[chosen] for c in v.coords])
+        for name, v in values.items()
+    }
+
+
 def at(values: Values, k: int) -> dict[str, Value]:
     """The values of point k of a batch."""
     scalars = {n: [np.float64(c[k] if np.ndim(c) else c) for c in v.coords] for n, v in values.items()}
@@ -85,8 +99,7 @@ def evaluated(function: AnyFunction, values: Values) -> tuple[Array, ...]:
             inside &= np.broadcast_to(np.asarray(condition, dtype=bool), points)
         arrays: list[Array] = []
         for k, port in enumerate(program.outputs):
-            entries = [np.broadcast_to(np.asarray(e, dtype=np.float64), points) for e in results[port.name]]
-            flat = np.where(inside[:, None], np.stack(entries, axis=-1), np.nan)
+            flat = np.where(inside[:, None], columns_of(results[port.name], points), np.nan)
             arrays.append(flat if k == 0 else flat.reshape(points, *port.shape))
     return tuple(arrays)
 
@@ -101,7 +114,7 @@ def arguments(function: AnyFunction, values: Values, *, own: bool) -> list[list[
     for p in function.graph.parameters:
         coords = values[p.name].coords
         scalars = coords if own else p.storage.write(coords)
-        flat = np.stack([np.broadcast_to(np.asarray(c, dtype=np.float64), points) for c in scalars], axis=-1)
+        flat = columns_of(scalars, points)
         shape = (flat.shape[-1],) if own else p.storage.shape or (p.storage.size,)
         columns.append(flat.reshape(points, *shape))
     return [[np.array(column[k]) for column in columns] for k in range(points)]
@@ -135,6 +148,11 @@ class Sampled:
         """Number of points."""
         return len(self.owners)
 
+    @property
+    def firsts(self) -> NDArray[np.intp]:
+        """The point of each sample itself, before those on the sides of a jump."""
+        return np.flatnonzero(np.r_[True, self.owners[1:] != self.owners[:-1]])
+
     def first_points(self, samples: int) -> NDArray[np.intp]:
         """The points of the first general samples, which are one each."""
         chosen = np.flatnonzero(self.general)[:samples]
@@ -146,13 +164,9 @@ class Sampled:
             return self
         points = samples[self.owners]
         number = np.cumsum(samples) - 1
-        values = {
-            n: type(v).holding([np.broadcast_to(c, self.points)[points] for c in v.coords])
-            for n, v in self.values.items()
-        }
         return Sampled(
             tuple(k for k, kept in zip(self.kinds, samples, strict=True) if kept),
-            values,
+            some(self.values, points),
             number[self.owners[points]],
             self.near_jump[samples],
             tuple(a[points] for a in self.expected),

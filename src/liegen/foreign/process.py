@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pickle
 import signal
 import subprocess
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 from liegen import errors
 from liegen.define import Function
 from liegen.errors import LiegenError, ToolError
-from liegen.subprocesses import time_limit
+from liegen.subprocesses import OWN_GROUP, end_group, time_limit
 
 from .calls import Foreign, Loaded, typed
 from .returned import RaisedError
@@ -65,7 +64,7 @@ class _Worker:
             [sys.executable, "-c", "from liegen.foreign.worker import main; main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            process_group=0 if os.name == "posix" else -1,
+            process_group=OWN_GROUP,
         )
 
     def call(self, arguments: Sequence[Array]) -> tuple[Array, ...]:
@@ -106,11 +105,7 @@ class _Worker:
 
     def end(self) -> None:
         """End the process and all that it started."""
-        if os.name == "posix":
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(self.process.pid, signal.SIGKILL)
-        else:
-            self.process.kill()
+        end_group(self.process)
         self.process.wait()
         for pipe in (self.process.stdin, self.process.stdout):
             with suppress(OSError):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from liegen.charts import form_chart
 from liegen.errors import DefinitionError, ToolError
 from liegen.manifolds import Group, Manifold, Value
-from liegen.samples import Case, Draw
+from liegen.samples import Case, Draw, other_quaternion
 from liegen.verify.draws import sampler_of
 
 from .calls import Foreign
@@ -28,6 +28,7 @@ from .points import (
     at,
     batch,
     evaluated,
+    every,
     size_of,
 )
 from .returned import RaisedError
@@ -93,25 +94,25 @@ def sampled(function: AnyFunction, foreign: Foreign, samples: int, seed: int) ->
         points += [here, *others]
         owners += [len(kept)] * (1 + len(others))
         kept.append(drawn[k])
-    every = batch(points)
+    everywhere = batch(points)
     index = np.array(owners)
     firsts = batch([d.values for d in kept])
     found, raised = _foreign_results(function, foreign, kept, firsts)
     whole = Sampled(
         tuple(d.kind for d in kept),
-        every,
+        everywhere,
         index,
         np.bincount(index, minlength=len(kept)) > 1,
-        evaluated(function, every),
+        evaluated(function, everywhere),
         found,
         raised,
     )
-    across = _across_a_jump(function, whole, firsts, draw)
+    across = _across_a_jump(function, whole, draw)
     left_out[_ACROSS] = int(across.sum())
     return replace(whole.only(~across), left_out=tuple((why, n) for why, n in left_out.items() if n))
 
 
-def _across_a_jump(function: AnyFunction, held: Sampled, values: Values, draw: Draw) -> NDArray[np.bool_]:
+def _across_a_jump(function: AnyFunction, held: Sampled, draw: Draw) -> NDArray[np.bool_]:
     """The samples at which the Jacobians are numerical differences across a jump of the residual.
 
     There is nothing to hold them against: a column of such a Jacobian is the jump, divided by a small step.
@@ -119,9 +120,9 @@ def _across_a_jump(function: AnyFunction, held: Sampled, values: Values, draw: D
     """
     across = np.zeros(len(held.kinds), dtype=bool)
     for k in np.flatnonzero(~held.general):
-        here = at(values, int(k))
-        exact = [a[0] for a in evaluated(function, here)]
-        jump = _jump(function, here, exact, draw)
+        first = int(held.firsts[k])
+        exact = [a[first] for a in held.expected]
+        jump = _jump(function, at(held.values, first), exact, draw)
         if jump is None:
             continue
         residual, *blocks = (a[k] for a in held.found)
@@ -153,7 +154,7 @@ def _multiple(error: Array, jump: Array) -> bool:
 
 
 def _finite(outputs: Sequence[Array]) -> NDArray[np.bool_]:
-    return np.all([np.isfinite(a).reshape(len(a), -1).all(axis=1) for a in outputs], axis=0)
+    return np.all([every(np.isfinite(a)) for a in outputs], axis=0)
 
 
 def _drawn(function: AnyFunction, given: Mapping[str, Value], samples: int, seed: int) -> Iterator[Drawn]:
@@ -173,21 +174,13 @@ def _drawn(function: AnyFunction, given: Mapping[str, Value], samples: int, seed
             yield Drawn(ZERO, solved)
     for case in SPECIAL:
         for _ in range(_EACH):
-            yield Drawn(case.name, _other_quaternions(one(case)) if case.negate else one(case))
+            values = one(case)
+            if case.negate:
+                values = {name: other_quaternion(v) for name, v in values.items()}
+            yield Drawn(case.name, values)
     for name, moved in _turned(function, set(given)):
         values = one(RANDOM)
         yield Drawn(f"{name} {moved[0]}", {**values, name: moved[1]})
-
-
-def _other_quaternions(values: Mapping[str, Value]) -> dict[str, Value]:
-    """The same rotations, all by the other quaternion."""
-    moved: dict[str, Value] = {}
-    for name, v in values.items():
-        coords = list(v.coords)
-        for start in v.form.quaternions:
-            coords[start : start + 4] = [-c for c in coords[start : start + 4]]
-        moved[name] = type(v).holding(coords)
-    return moved
 
 
 def _turned(function: AnyFunction, given: set[str]) -> Iterator[tuple[str, tuple[str, Value]]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from functools import cache
 from itertools import product
 from typing import Any, get_args, get_type_hints
 
@@ -27,17 +28,32 @@ class Candidate:
         """The preset's name, if it is one."""
         return (self.preset.name,) if self.named else ()
 
+    def size(self, phrases: int) -> float:
+        """How large an explanation it is, told in so many phrases; that of a library is a smaller one."""
+        return max(1.0, min(1.4, phrases) if self.named else 0.9 * phrases)
+
     @property
     def name(self) -> str:
         """The preset's name, or the Chart as it is written."""
         return self.preset.name
 
 
-def candidates(form: ManifoldForm, own: Preset) -> Iterator[Candidate]:
+def order_in_words(order: Any) -> str:
+    """Which part of a tangent comes before which."""
+    return "translation before rotation" if order == "translation-first" else "rotation before translation"
+
+
+def scale_in_words(scale: Any) -> str:
+    """Which multiple of the angle the coordinates are."""
+    return "half of" if scale == 2 else "twice"
+
+
+@cache
+def candidates(form: ManifoldForm, own: Preset) -> tuple[Candidate, ...]:
     """Presets first, then the combinations, those with fewer differences first."""
     charted = representative(form)
     if charted is None:
-        return
+        return ()
     stated = resolved(own.chart(charted), charted)
     combined = [Preset(chart.description, chart, chart) for chart in _all_charts()]
     found: list[Candidate] = []
@@ -57,7 +73,7 @@ def candidates(form: ManifoldForm, own: Preset) -> Iterator[Candidate]:
             if getattr(other, f.name) != getattr(stated, f.name)
         )
         found.append(Candidate(preset, chart, differing, preset.name in PRESETS))
-    yield from sorted(found, key=lambda c: (len(c.differing), not c.named))
+    return tuple(sorted(found, key=lambda c: (len(c.differing), not c.named)))
 
 
 def representative(form: ManifoldForm) -> ManifoldForm | None:

@@ -14,7 +14,7 @@ from liegen.manifolds import Group, Vector
 from liegen.trace import Parameter
 
 from .. import tangents
-from .chart_candidates import candidates
+from .chart_candidates import candidates, order_in_words, scale_in_words
 from .difference import Array, Difference, Subject, constant, matrices
 
 _TRANSLATION = {
@@ -70,7 +70,7 @@ def _charts(subject: Subject, p: Parameter) -> Iterator[Difference]:
         right = chart_columns(p, candidate.preset, x, _points(subject))
         differing = [pair for pair in candidate.differing if pair[0] != "rotation"]
         phrases = tuple(_phrase(field, value, p.name) for field, value in differing)
-        size = max(1.0, min(1.4, len(phrases)) if candidate.named else 0.9 * len(phrases))
+        size = candidate.size(len(phrases))
         yield Difference("columns", phrases, size, right=right, charts=candidate.names)
 
 
@@ -79,11 +79,10 @@ def _phrase(field: str, value: Any, x: str) -> str:
         left = value == "left"
         return f"{x} is perturbed from the {value}, {f'Exp(d) {x}' if left else f'{x} Exp(d)'}"
     if field == "scale":
-        return f"rotations are given by {'half of' if value == 2 else 'twice'} the angle"
+        return f"rotations are given by {scale_in_words(value)} the angle"
     if field == "translation":
         return f"the translation of {x} {_TRANSLATION[value]}"
-    first, last = ("translation", "rotation") if value == "translation-first" else ("rotation", "translation")
-    return f"the tangent of {x} has the {first} before {last}"
+    return f"the tangent of {x} has the {order_in_words(value)}"
 
 
 def _side(subject: Subject, p: Parameter) -> Iterator[Difference]:

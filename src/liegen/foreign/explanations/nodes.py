@@ -13,9 +13,10 @@ from liegen.manifolds import Leaf, Manifold, Node, Value
 from liegen.manifolds.node import parameter
 from liegen.trace import Graph, Parameter
 from liegen.trace.formulas import texts_of
+from liegen.trace.frame_repair import replaced
 from liegen.trace.graph import topological
 
-from ..points import Values, size_of
+from ..points import Values, columns_of, size_of
 from .difference import Difference, Subject
 
 #: A name that no argument has: names of Python have no spaces.
@@ -39,7 +40,7 @@ def value_of(graph: Graph, node: Node, values: Values) -> Any:
                 coords[id(n)] = operation.value(*(coords[id(o)] for o in n.operands))
     manifold: Any = node.manifold
     points = size_of(values)
-    return manifold.holding([np.broadcast_to(np.asarray(c, float), points) for c in coords[id(node)]])
+    return manifold.holding([*columns_of(coords[id(node)], points).T])
 
 
 def held_constant(subject: Subject) -> Iterator[Difference]:
@@ -72,14 +73,9 @@ def _jacobian_with(graph: Graph, node: Node, value: Value, subject: Subject) -> 
     variable: Any = subject.variable
     manifold: Any = node.manifold
     held = parameter(manifold, _HELD, node.site)
-    ((name, output),) = graph.outputs
     others = tuple(replace(p, variable=p.name == variable.name, default=None) for p in graph.parameters)
     changed = replace(
-        graph,
-        parameters=(*others, Parameter(_HELD, manifold, False, held)),
-        outputs=((name, _with(output, node, held)),),
-        domain=(),
-        calls=(),
+        replaced(graph, node, held), parameters=(*others, Parameter(_HELD, manifold, False, held)), domain=()
     )
     values = {**subject.sampled.values, _HELD: value}
     program, points = derive(changed).jacobians, subject.sampled.points
@@ -88,16 +84,4 @@ def _jacobian_with(graph: Graph, node: Node, value: Value, subject: Subject) -> 
             {p.name: p.storage.write(values[p.name].coords) for p in changed.parameters}
         )
     port = program.outputs[1]
-    entries = [np.broadcast_to(np.asarray(e, dtype=float), points) for e in results[port.name]]
-    return np.stack(entries, axis=-1).reshape(points, *port.shape)
-
-
-def _with(output: Node, old: Node, new: Node) -> Node:
-    """The output with ``new`` in place of ``old``."""
-    done: dict[int, Node] = {id(old): new}
-    for node in topological([output]):
-        if id(node) not in done:
-            operands = tuple(done[id(n)] for n in node.operands)
-            same = all(a is b for a, b in zip(operands, node.operands, strict=True))
-            done[id(node)] = node if same else Node(node.operation, operands, node.site)
-    return done[id(output)]
+    return columns_of(results[port.name], points).reshape(points, *port.shape)

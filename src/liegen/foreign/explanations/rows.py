@@ -12,8 +12,8 @@ from liegen.charts import form_chart
 from liegen.manifolds import Group, Vector
 
 from .. import tangents
-from ..points import every
-from .chart_candidates import candidates
+from ..points import columns_of, every
+from .chart_candidates import candidates, order_in_words, scale_in_words
 from .columns import matrices_of
 from .difference import Array, Difference, Subject, constant, matrices
 from .nodes import value_of
@@ -67,10 +67,10 @@ def _charts(subject: Subject, manifold: Any, z: Any) -> Iterator[Difference]:
         side = candidate.chart or form
         with np.errstate(all="ignore"):
             value = tuple(side.local(z.coords, y))
-        stacked = np.stack([np.broadcast_to(np.asarray(c, float), points) for c in value], axis=-1)
+        stacked = columns_of(value, points)
         known = every(np.abs(stacked) < _LARGEST)
         phrases = tuple(_phrase(field, text) for field, text in candidate.differing)
-        size = max(1.0, min(1.4, len(phrases)) if candidate.named else 0.9 * len(phrases))
+        size = candidate.size(len(phrases))
         if subject.variable is None:
             base = np.where(known[:, None], stacked, np.nan)[..., None]
             yield Difference("rows", phrases, size, base=base, charts=candidate.names)
@@ -104,13 +104,12 @@ def _phrase(field: str, value: Any) -> str:
     if field == "side":
         return f"the residual is taken from the {value}"
     if field == "scale":
-        return f"the residual's rotation is {'half of' if value == 2 else 'twice'} the angle"
+        return f"the residual's rotation is {scale_in_words(value)} the angle"
     if field == "translation":
         return f"the residual's translation is {_TRANSLATION[value]}"
     if field == "rotation":
         return f"the residual's rotation is {_MAP[value]}"
-    first, last = ("translation", "rotation") if value == "translation-first" else ("rotation", "translation")
-    return f"the tangent of the residual has the {first} before {last}"
+    return f"the tangent of the residual has the {order_in_words(value)}"
 
 
 def _jr(subject: Subject, manifold: Any, z: Any) -> Iterator[Difference]:

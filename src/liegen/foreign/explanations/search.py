@@ -62,12 +62,12 @@ def agreeing(subject: Subject, array: Array, tolerance: float) -> NDArray[np.boo
         scale = np.maximum(1.0, np.abs(array).max(axis=(1, 2), initial=0.0))
         relative = np.abs(found - array) / scale[:, None, None]
     allowed = np.full(sampled.points, tolerance)
-    first = np.r_[True, sampled.owners[1:] != sampled.owners[:-1]]
-    allowed[~first] = max(tolerance, 1e-6)  # a point beside the sample
+    beside = np.setdiff1d(np.arange(sampled.points), sampled.firsts)
+    allowed[beside] = max(tolerance, 1e-6)
     unknown = ~every(np.isfinite(array))
     good: Any = np.logical_or(relative <= allowed[:, None, None], unknown[:, None, None])
-    result: NDArray[np.bool_] = np.array(good[first], dtype=bool)
-    for k in np.flatnonzero(~first):
+    result: NDArray[np.bool_] = np.array(good[sampled.firsts], dtype=bool)
+    for k in beside:
         owner = sampled.owners[k]
         if np.count_nonzero(good[k]) > np.count_nonzero(result[owner]):
             result[owner] = good[k]

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from liegen.errors import LiegenError
 from liegen.layouts import storage
 
-from ..points import AnyFunction, Values, evaluated, nudged, size_of, stable
+from ..points import AnyFunction, Values, columns_of, evaluated, nudged, size_of, stable
 from .chart_candidates import Candidate, candidates, representative
 from .columns import chart_columns
 from .difference import Array, Subject
@@ -114,7 +112,7 @@ def _residual(charted: AnyFunction, values: Values) -> Array:
     graph = charted.graph
     output = graph.outputs[0][1]
     scalars = storage(output.manifold.form, graph.layout).write(value_of(graph, output, values).coords)
-    return np.stack([np.broadcast_to(np.asarray(c, float), size_of(values)) for c in scalars], axis=-1)
+    return columns_of(scalars, size_of(values))
 
 
 def _depends_on_chart(function: AnyFunction) -> bool:
