@@ -4,8 +4,7 @@ import shlex
 from itertools import product
 
 import pytest
-from click.testing import CliRunner
-from test_command_lines import CASES, FILES, snapshot
+from test_command_lines import CASES, FILES, is_refused, written
 
 from liegen.cli import app
 
@@ -124,29 +123,13 @@ LINES = {
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """One folder for all: no command may change what is in it."""
-    place = tmp_path_factory.mktemp("commands")
-    for name, text in (FILES | {name: text for name, (text, _) in BROKEN.items()}).items():
-        path = place / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
-    return place
+    broken = {name: text for name, (text, _) in BROKEN.items()}
+    return written(tmp_path_factory.mktemp("commands"), FILES | broken)
 
 
 @pytest.mark.parametrize("line", LINES)
 def test_an_odd_value_of_an_option(line, folder, monkeypatch):
-    monkeypatch.chdir(folder)
-    before = snapshot(folder)
-    done = CliRunner().invoke(app, shlex.split(line))
-    assert done.exit_code in (1, 2), done.output
-    assert done.exception is None or isinstance(done.exception, SystemExit)
-    assert LINES[line] in done.stderr
-    assert sum(text.startswith("Error: ") for text in done.stderr.splitlines()) == 1
-    assert "Traceback" not in done.output
-    assert "\x1b" not in done.output
-    assert len(done.stderr) < 1500
-    assert done.stdout == ""
-    assert str(folder) not in done.output
-    assert snapshot(folder) == before
+    is_refused(line, LINES[line], folder, monkeypatch)
 
 
 def test_every_option_of_every_command_is_in_the_tables():

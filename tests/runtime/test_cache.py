@@ -215,14 +215,19 @@ def key_of(name):
     return name.partition("-")[0]
 
 
-def test_an_entry_of_another_key_is_not_loaded(folder, compilations):
-    """A whole library, but of another factor: its name says so, whatever it is renamed to."""
+def mine_and_theirs(folder, other):
+    """The entries of ``rotated``, which is removed, and of another function."""
     works(liegen.compile(rotated))
     (mine,) = entries(folder)
-    other = rotated.vary("R", name="turned")
     liegen.compile(other)
     (theirs,) = set(entries(folder)) - {mine}
     (folder / mine).unlink()
+    return mine, theirs
+
+
+def test_an_entry_of_another_key_is_not_loaded(folder, compilations):
+    """A whole library, but of another factor: its name says so, whatever it is renamed to."""
+    mine, theirs = mine_and_theirs(folder, rotated.vary("R", name="turned"))
     (folder / theirs).rename(folder / f"{key_of(mine)}-{theirs.partition('-')[2]}")
     works(liegen.compile(rotated))
     assert len(compilations) == 3
@@ -246,11 +251,7 @@ def test_another_formula_of_the_same_name(folder, compilations):
 
 
 def test_the_library_of_another_formula_is_not_loaded(folder, compilations):
-    works(liegen.compile(rotated))
-    (mine,) = entries(folder)
-    liegen.compile(same_name())
-    (theirs,) = set(entries(folder)) - {mine}
-    (folder / mine).unlink()
+    mine, theirs = mine_and_theirs(folder, same_name())
     (folder / theirs).rename(folder / f"{key_of(mine)}-{theirs.partition('-')[2]}")
     works(liegen.compile(rotated))
     assert len(compilations) == 3
@@ -258,13 +259,8 @@ def test_the_library_of_another_formula_is_not_loaded(folder, compilations):
 
 def test_a_library_without_the_functions_is_made_anew(folder, compilations):
     """Even one whose name is right."""
-    works(liegen.compile(rotated))
-    (mine,) = entries(folder)
-    other = rotated.vary("R", name="turned")
-    liegen.compile(other)
-    (theirs,) = set(entries(folder)) - {mine}
+    mine, theirs = mine_and_theirs(folder, rotated.vary("R", name="turned"))
     content = (folder / theirs).read_bytes()
-    (folder / mine).unlink()
     forged = folder / f"{cache.entry_name(key_of(mine), content)}{cache.SUFFIX}"
     forged.write_bytes(content)
     forged.chmod(0o600)
